@@ -1,0 +1,23 @@
+# Compile settings that every vsplit target shares.
+#
+# vsplit_target(NAME) sets warnings, sanitizers and the floating-point contract on a target.
+# -ffp-contract=off is part of the format, not a preference: encoder and decoder must round alike on
+# every processor (proto/STREAM_FORMAT.md, "Arithmetic").
+function(vsplit_target name)
+    target_compile_options(
+        ${name} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+                        -ffp-contract=off
+    )
+    if(VSPLIT_WERROR)
+        target_compile_options(${name} PRIVATE -Werror)
+    endif()
+    if(VSPLIT_SANITIZE)
+        target_compile_options(
+            ${name} PRIVATE -fsanitize=${VSPLIT_SANITIZE} -fno-omit-frame-pointer -g
+        )
+        target_link_options(${name} PUBLIC -fsanitize=${VSPLIT_SANITIZE})
+        if(VSPLIT_SANITIZE MATCHES "undefined")
+            target_compile_options(${name} PRIVATE -fno-sanitize-recover=undefined)
+        endif()
+    endif()
+endfunction()

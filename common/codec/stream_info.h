@@ -1,0 +1,111 @@
+#pragma once
+
+#include "core/result.h"
+#include "mesh/quantization_grid.h"
+#include "format.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace vsplit::codec {
+
+/// Bounds that a reader sets before it trusts a stream.
+struct DecodeLimits
+{
+    std::uint32_t max_vertices = proto::kMaxVertices;
+    std::uint32_t max_faces = proto::kMaxFaces;
+    std::uint32_t max_header_bytes = proto::kMaxHeaderBytes;
+    std::uint32_t max_chunk_bytes = 1U << 28;
+    /// Largest heap that the decoder may come to use, bytes (see decoder_heap_bytes()).
+    std::uint64_t max_heap_bytes = std::numeric_limits<std::uint64_t>::max();
+};
+
+/// One row of the index: a run of bytes that is decoded as a whole.
+struct ChunkInfo
+{
+    proto::ChunkKind kind = proto::ChunkKind::Batch;
+    std::uint8_t codec = 0;         ///< Codec of this kind; 0 is the only one of version 0.
+    bool ends_level = true;         ///< True when the mesh reaches the next level after it.
+    std::uint64_t offset = 0;       ///< First byte in the file.
+    std::uint32_t bytes = 0;        ///< Length.
+    std::uint32_t checksum = 0;     ///< CRC-32C of the bytes.
+    std::uint32_t vertices = 0;     ///< Vertices of the mesh after it.
+    std::uint32_t faces = 0;        ///< Triangles of the mesh after it.
+    double rms_error = 0.0;         ///< RMS surface distance to the source after it, model units.
+    double max_error = 0.0;         ///< Largest sampled surface distance after it, model units.
+};
+
+/// The mesh after a number of batches: level 0 is the base mesh.
+struct LevelInfo
+{
+    std::uint32_t level = 0;
+    std::uint32_t vertices = 0;
+    std::uint32_t faces = 0;
+    std::uint64_t chunk_bytes = 0;       ///< Bytes of its chunks; level 0 without the header.
+    std::uint64_t cumulative_bytes = 0;  ///< Length of the file prefix that shows this level.
+    double rms_error = 0.0;              ///< Model units.
+    double max_error = 0.0;              ///< Model units.
+};
+
+/// Everything the header and the index say, known before any mesh data arrives.
+struct StreamInfo
+{
+    std::uint8_t major = 0;
+    std::uint8_t minor = 0;
+    QuantizationGrid grid;
+    std::array<double, 3> box_min{};   ///< Bounding box of the quantised mesh, model units.
+    std::array<double, 3> box_max{};
+    std::uint32_t vertex_count = 0;    ///< Vertices of the last level.
+    std::uint32_t face_count = 0;      ///< Triangles of the last level.
+    std::uint32_t header_bytes = 0;    ///< Length of header and index.
+    std::uint64_t file_bytes = 0;      ///< Length of the whole stream.
+    std::vector<ChunkInfo> chunks;     ///< In file order.
+    std::vector<LevelInfo> levels;     ///< Level 0 first.
+
+    /// Length of the bounding-box diagonal, model units.
+    [[nodiscard]] double diagonal() const;
+};
+
+/// When to stop reading; unset members do not matter, the first one met stops.
+struct StopCondition
+{
+    std::uint32_t level = std::numeric_limits<std::uint32_t>::max();  ///< Stop at this level.
+    std::uint64_t bytes = std::numeric_limits<std::uint64_t>::max();  ///< Prefix at most so long.
+    std::uint32_t faces = std::numeric_limits<std::uint32_t>::max();  ///< At most so many faces.
+    /// Stop at the first level whose RMS error, model units, is not above this.
+    double error = 0.0;
+};
+
+/// Returns how many bytes of a stream must be there before its header length is known.
+[[nodiscard]] constexpr std::size_t header_probe_bytes()
+{
+    return proto::kFixedHeaderBytes;
+}
+
+/// Reads the length of header and index from the first header_probe_bytes() bytes.
+/// `prefix`: the first bytes of a stream. Errors: Truncated, BadMagic, UnsupportedVersion, BadHeader,
+/// LimitExceeded. Safe on untrusted input.
+[[nodiscard]] Result<std::uint32_t> parse_header_bytes(
+    std::span<const std::byte> prefix, const DecodeLimits& limits = {}
+);
+
+/// Parses header and index.
+/// `prefix`: at least the header's bytes of a stream; more does no harm.
+/// Errors: those of parse_header_bytes, BadChecksum, UnknownRequiredChunk, LimitExceeded.
+/// Cost: linear in the header. Thread safe. Safe on untrusted input.
+/// Source: proto/STREAM_FORMAT.md, "Header" and "Index".
+[[nodiscard]] Result<StreamInfo> parse_stream_info(
+    std::span<const std::byte> prefix, const DecodeLimits& limits = {}
+);
+
+/// Returns the length of the file prefix to read for a stop condition: a chunk boundary, at least
+/// header and base, at most the file. `bytes` below header and base still gives header and base.
+[[nodiscard]] std::uint64_t stop_offset(const StreamInfo& info, const StopCondition& stop);
+
+/// Returns an upper bound of the heap that a StreamDecoder needs for the whole stream, bytes.
+[[nodiscard]] std::uint64_t decoder_heap_bytes(const StreamInfo& info);
+
+}  // namespace vsplit::codec

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+/// Constants of the stream file, version 0 (proto/STREAM_FORMAT.md). A test compares them with the
+/// tables of that document.
+namespace vsplit::proto {
+
+inline constexpr std::uint32_t kStreamMagic = 0x54505356;  ///< "VSPT", little-endian.
+inline constexpr std::uint8_t kStreamMajor = 0;
+inline constexpr std::uint8_t kStreamMinor = 1;
+
+/// Size of the part of the header that has a fixed layout, bytes.
+inline constexpr std::size_t kFixedHeaderBytes = 16;
+
+inline constexpr int kMinPositionBits = 8;
+inline constexpr int kMaxPositionBits = 20;
+inline constexpr std::uint32_t kMaxVertices = 1U << 28;
+inline constexpr std::uint32_t kMaxFaces = 1U << 29;
+inline constexpr std::uint32_t kMaxChunks = 1U << 20;
+inline constexpr std::uint32_t kMaxHeaderBytes = 1U << 24;
+
+/// Chunks are cut so that they stay near this size; a reader accepts larger ones within its limits.
+inline constexpr std::uint32_t kTargetChunkBytes = 64U * 1024U;
+
+/// What a chunk holds. Kinds below 64 are required: a reader that does not know one refuses the
+/// stream; kinds from 64 on are optional and may be skipped by their length.
+enum class ChunkKind : std::uint8_t
+{
+    Base = 0,     ///< The base mesh, a Draco mesh.
+    Batch = 1,    ///< Vertex splits that refine the mesh.
+    Stitch = 64,  ///< Which vertices of the last level are one vertex in the source mesh.
+};
+
+inline constexpr std::uint8_t kFirstOptionalChunkKind = 64;
+
+}  // namespace vsplit::proto
