@@ -17,7 +17,7 @@ inline constexpr std::size_t kFixedHeaderBytes = 16;
 inline constexpr int kMinPositionBits = 8;
 inline constexpr int kMaxPositionBits = 20;
 inline constexpr std::uint32_t kMaxVertices = 1U << 28;
-inline constexpr std::uint32_t kMaxFaces = 1U << 29;
+inline constexpr std::uint32_t kMaxFaces = (1U << 29) - 2;
 inline constexpr std::uint32_t kMaxChunks = 1U << 20;
 inline constexpr std::uint32_t kMaxHeaderBytes = 1U << 24;
 

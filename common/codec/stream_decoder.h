@@ -22,26 +22,26 @@ struct TriangleUpdate
 /// What one StreamDecoder::step() did.
 enum class StepKind : std::uint8_t
 {
-    NeedBytes,    ///< Nothing: the next chunk is not complete; feed more.
-    Header,       ///< Header and index are known now.
-    Chunk,        ///< One chunk was applied; the mesh is valid and finer.
-    SkippedChunk, ///< An optional chunk was passed over or changed no triangle.
-    Complete,     ///< Nothing: every chunk of the stream was applied.
+    NeedBytes,     ///< Nothing: the next chunk is not complete; feed more.
+    Header,        ///< Header and index are known now.
+    Chunk,         ///< One chunk was applied; the mesh is valid and finer.
+    SkippedChunk,  ///< An optional chunk was passed over or changed no triangle.
+    Complete,      ///< Nothing: every chunk of the stream was applied.
 };
 
 /// How the mesh changed in one step; for keeping GPU buffers up to date.
 struct Step
 {
     StepKind kind = StepKind::NeedBytes;
-    bool level_complete = false;        ///< True when a level of the index is reached.
-    std::uint32_t level = 0;            ///< The level being shown (the last one completed).
-    std::uint32_t chunk_bytes = 0;      ///< Bytes of the chunk that was applied.
-    std::uint32_t first_new_vertex = 0; ///< Vertices from here on are new.
+    bool level_complete = false;         ///< True when a level of the index is reached.
+    std::uint32_t level = 0;             ///< The level being shown (the last one completed).
+    std::uint32_t chunk_bytes = 0;       ///< Bytes of the chunk that was applied.
+    std::uint32_t first_new_vertex = 0;  ///< Vertices from here on are new.
     /// Vertices from here on have new positions: equals first_new_vertex, or 0 when known positions
     /// gained precision.
     std::uint32_t first_moved_vertex = 0;
-    std::uint32_t vertices = 0;         ///< Vertices of the mesh now.
-    std::uint32_t faces = 0;            ///< Triangles of the mesh now.
+    std::uint32_t vertices = 0;                 ///< Vertices of the mesh now.
+    std::uint32_t faces = 0;                    ///< Triangles of the mesh now.
     std::span<const TriangleUpdate> triangles;  ///< Valid until the next step() or feed().
 };
 

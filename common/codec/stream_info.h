@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/result.h"
-#include "mesh/quantization_grid.h"
 #include "format.h"
+#include "mesh/quantization_grid.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -27,15 +27,15 @@ struct DecodeLimits
 struct ChunkInfo
 {
     proto::ChunkKind kind = proto::ChunkKind::Batch;
-    std::uint8_t codec = 0;         ///< Codec of this kind; 0 is the only one of version 0.
-    bool ends_level = true;         ///< True when the mesh reaches the next level after it.
-    std::uint64_t offset = 0;       ///< First byte in the file.
-    std::uint32_t bytes = 0;        ///< Length.
-    std::uint32_t checksum = 0;     ///< CRC-32C of the bytes.
-    std::uint32_t vertices = 0;     ///< Vertices of the mesh after it.
-    std::uint32_t faces = 0;        ///< Triangles of the mesh after it.
-    double rms_error = 0.0;         ///< RMS surface distance to the source after it, model units.
-    double max_error = 0.0;         ///< Largest sampled surface distance after it, model units.
+    std::uint8_t codec = 0;      ///< Codec of this kind; 0 is the only one of version 0.
+    bool ends_level = true;      ///< True when the mesh reaches the next level after it.
+    std::uint64_t offset = 0;    ///< First byte in the file.
+    std::uint32_t bytes = 0;     ///< Length.
+    std::uint32_t checksum = 0;  ///< CRC-32C of the bytes.
+    std::uint32_t vertices = 0;  ///< Vertices of the mesh after it.
+    std::uint32_t faces = 0;     ///< Triangles of the mesh after it.
+    double rms_error = 0.0;      ///< RMS surface distance to the source after it, model units.
+    double max_error = 0.0;      ///< Largest sampled surface distance after it, model units.
 };
 
 /// The mesh after a number of batches: level 0 is the base mesh.
@@ -56,14 +56,14 @@ struct StreamInfo
     std::uint8_t major = 0;
     std::uint8_t minor = 0;
     QuantizationGrid grid;
-    std::array<double, 3> box_min{};   ///< Bounding box of the quantised mesh, model units.
+    std::array<double, 3> box_min{};  ///< Bounding box of the quantised mesh, model units.
     std::array<double, 3> box_max{};
-    std::uint32_t vertex_count = 0;    ///< Vertices of the last level.
-    std::uint32_t face_count = 0;      ///< Triangles of the last level.
-    std::uint32_t header_bytes = 0;    ///< Length of header and index.
-    std::uint64_t file_bytes = 0;      ///< Length of the whole stream.
-    std::vector<ChunkInfo> chunks;     ///< In file order.
-    std::vector<LevelInfo> levels;     ///< Level 0 first.
+    std::uint32_t vertex_count = 0;  ///< Vertices of the last level.
+    std::uint32_t face_count = 0;    ///< Triangles of the last level.
+    std::uint32_t header_bytes = 0;  ///< Length of header and index.
+    std::uint64_t file_bytes = 0;    ///< Length of the whole stream.
+    std::vector<ChunkInfo> chunks;   ///< In file order.
+    std::vector<LevelInfo> levels;   ///< Level 0 first.
 
     /// Length of the bounding-box diagonal, model units.
     [[nodiscard]] double diagonal() const;
