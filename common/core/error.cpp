@@ -58,6 +58,8 @@ std::string_view error_name(ErrorCode code)
             return "connection-lost";
         case ErrorCode::EncodeFailed:
             return "encode-failed";
+        case ErrorCode::ContentChanged:
+            return "content-changed";
         case ErrorCode::Mismatch:
             return "mismatch";
         case ErrorCode::Internal:

@@ -36,6 +36,7 @@ enum class ErrorCode : std::uint16_t
     Cancelled = 64,            ///< The operation was cancelled.
     ConnectionLost = 65,       ///< The connection ended before the transfer did.
     EncodeFailed = 66,         ///< The server could not encode the source mesh.
+    ContentChanged = 67,       ///< The model is not the one whose transfer was to be resumed.
     Mismatch = 80,             ///< Verification: the stream does not reproduce its source.
     Internal = 99,             ///< A defect of vsplit itself; please report it.
 };
