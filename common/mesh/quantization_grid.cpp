@@ -38,9 +38,9 @@ std::array<std::int32_t, 3> quantize(
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
         const double scaled = std::floor((point[axis] - grid.origin[axis]) / grid.cell + 0.5);
-        index[axis] = static_cast<std::int32_t>(
-            std::clamp(scaled, 0.0, static_cast<double>(grid.max_index()))
-        );
+        index[axis] =
+            static_cast<std::int32_t>(std::clamp(scaled, 0.0, static_cast<double>(grid.max_index()))
+            );
     }
     return index;
 }
