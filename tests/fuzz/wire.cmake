@@ -1,0 +1,1 @@
+vsplit_fuzzer(wire_fuzzer wire_fuzzer.cpp vsplit_wire)
