@@ -1,0 +1,99 @@
+// Based on: Wang, Yang, "3D Models Simplification Algorithm for Mobile Devices", equations 17-19.
+// Our reading, for the paper's full text was not at hand: equation 17 compares a vertex with the mean
+// over its adaptive neighbourhood; equations 18 and 19 build a weight from neighbour distances, which
+// we take as the mean distance (18) in proportion to the whole model's mean (19).
+#include "precompute/curvature.h"
+#include "precompute/parallel_ranges.h"
+#include "precompute/vertex_neighbourhood.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vsplit::precompute {
+
+namespace {
+
+double distance(const std::array<double, 3>& a, const std::array<double, 3>& b)
+{
+    return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
+double mean_of(const std::vector<double>& values)
+{
+    double sum = 0.0;
+    for (const double value : values)
+    {
+        sum += value;
+    }
+    return sum / static_cast<double>(std::max<std::size_t>(1, values.size()));
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> feature_points(
+    const IndexedMesh& mesh,
+    const std::vector<float>& curvature,
+    const FeatureOptions& options,
+    unsigned threads
+)
+{
+    const auto vertex_count = static_cast<std::uint32_t>(mesh.positions.size());
+    std::vector<std::uint8_t> features(vertex_count, 0);
+    const OneRings rings(mesh);
+    const double floor =
+        options.flat * mean_of(std::vector<double>(curvature.begin(), curvature.end()));
+    parallel_ranges(vertex_count, threads, [&](std::uint32_t begin, std::uint32_t end) {
+        NeighbourhoodSearch search(mesh, rings);
+        for (std::uint32_t v = begin; v < end; ++v)
+        {
+            const auto neighbours = search.adaptive(v);
+            double sum = 0.0;
+            for (const std::uint32_t neighbour : neighbours)
+            {
+                sum += static_cast<double>(curvature[neighbour]);
+            }
+            const double mean =
+                sum / static_cast<double>(std::max<std::size_t>(1, neighbours.size()));
+            const auto own = static_cast<double>(curvature[v]);
+            features[v] = own > options.ratio * mean && own > floor ? 1 : 0;  // eq. 17
+        }
+    });
+    return features;
+}
+
+std::vector<float> sparseness_weights(const IndexedMesh& mesh, unsigned threads)
+{
+    const auto vertex_count = static_cast<std::uint32_t>(mesh.positions.size());
+    std::vector<double> spacing(vertex_count, 0.0);
+    const OneRings rings(mesh);
+    parallel_ranges(vertex_count, threads, [&](std::uint32_t begin, std::uint32_t end) {
+        NeighbourhoodSearch search(mesh, rings);
+        for (std::uint32_t v = begin; v < end; ++v)
+        {
+            const auto neighbours = search.adaptive(v);
+            double sum = 0.0;
+            for (const std::uint32_t neighbour : neighbours)
+            {
+                sum += distance(mesh.positions[v], mesh.positions[neighbour]);
+            }
+            // eq. 18
+            spacing[v] = sum / static_cast<double>(std::max<std::size_t>(1, neighbours.size()));
+        }
+    });
+    const double model_spacing = mean_of(spacing);
+    std::vector<float> weights(vertex_count, 1.0F);
+    if (!(model_spacing > 0.0) || !std::isfinite(model_spacing))
+    {
+        return weights;
+    }
+    // A vertex that coincides with all of its neighbours still gets a positive weight.
+    constexpr double kLeastWeight = 1e-3;
+    for (std::uint32_t v = 0; v < vertex_count; ++v)
+    {
+        weights[v] =
+            static_cast<float>(std::max(kLeastWeight, spacing[v] / model_spacing));  // eq. 19
+    }
+    return weights;
+}
+
+}  // namespace vsplit::precompute

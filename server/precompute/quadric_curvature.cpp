@@ -1,0 +1,38 @@
+// Based on: Goldfeather, Interrante, "A Novel Cubic-Order Algorithm for Approximating Principal
+// Direction Vectors", 2004, section 3: the quadratic height-field fit with linear terms.
+// Departure: the points are the two-ring or the nearest 24 of it, all with equal weight.
+#include "precompute/curvature.h"
+#include "precompute/local_fit.h"
+#include "precompute/parallel_ranges.h"
+
+namespace vsplit::precompute {
+
+namespace {
+
+constexpr std::size_t kMostFitted = 24;
+
+}  // namespace
+
+std::vector<float> quadric_curvature(const IndexedMesh& mesh, unsigned threads)
+{
+    const auto vertex_count = static_cast<std::uint32_t>(mesh.positions.size());
+    std::vector<float> curvature(vertex_count, 0.0F);
+    const OneRings rings(mesh);
+    const auto normals = vertex_normals(mesh);
+    parallel_ranges(vertex_count, threads, [&](std::uint32_t begin, std::uint32_t end) {
+        NeighbourhoodSearch search(mesh, rings);
+        LocalPatch patch;
+        for (std::uint32_t v = begin; v < end; ++v)
+        {
+            const auto ring = rings[v];
+            if (!ring.empty() &&
+                make_patch(mesh, normals, v, ring[0], search.two_ring(v, kMostFitted), patch))
+            {
+                curvature[v] = to_curvature(quadric_fit(patch), patch.radius);
+            }
+        }
+    });
+    return curvature;
+}
+
+}  // namespace vsplit::precompute

@@ -1,0 +1,154 @@
+#include "precompute/vertex_neighbourhood.h"
+
+#include "precompute/curvature_shapes.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace vsplit::precompute {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+IndexedMesh make_sheet(std::uint32_t cells)
+{
+    return test::sample_parametric(
+        [](double u, double v) {
+            return std::array{u, v, 0.0};
+        },
+        cells,
+        cells
+    );
+}
+
+TEST(OneRings, ListEveryNeighbourOnceInAscendingOrder)
+{
+    // A square with both diagonals' corners: 0 and 2 share an edge, 1 and 3 do not; 4 is isolated.
+    const IndexedMesh square{
+        .positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {9, 9, 9}},
+        .triangles = {{0, 1, 2}, {0, 2, 3}, {3, 3, 0}}};
+    const OneRings rings(square);
+    EXPECT_THAT(rings[0], ElementsAre(1, 2, 3));
+    EXPECT_THAT(rings[1], ElementsAre(0, 2));
+    EXPECT_THAT(rings[2], ElementsAre(0, 1, 3));
+    EXPECT_THAT(rings[3], ElementsAre(0, 2));
+    EXPECT_THAT(rings[4], IsEmpty());
+}
+
+TEST(NeighbourhoodSearch, KeepsTheNearestOfATwoRingThatIsTooLarge)
+{
+    const IndexedMesh sheet = make_sheet(10);
+    const OneRings rings(sheet);
+    NeighbourhoodSearch search(sheet, rings);
+    const std::uint32_t middle = 5 * 11 + 5;
+    const std::size_t whole = search.two_ring(middle, 1000).size();
+    EXPECT_GT(whole, 12U);
+    EXPECT_THAT(
+        search.two_ring(middle, 4), ElementsAre(4 * 11 + 5, 5 * 11 + 4, 5 * 11 + 6, 6 * 11 + 5)
+    );
+}
+
+TEST(NeighbourhoodSearch, FindsSixteenToTwentyFiveNeighboursNearestFirst)
+{
+    const IndexedMesh sheet = make_sheet(12);
+    const OneRings rings(sheet);
+    NeighbourhoodSearch search(sheet, rings);
+    for (std::uint32_t v = 0; v < sheet.positions.size(); ++v)
+    {
+        const auto neighbours = search.adaptive(v);
+        ASSERT_GE(neighbours.size(), 16U);
+        ASSERT_LE(neighbours.size(), 25U);
+        double before = 0.0;
+        for (const std::uint32_t w : neighbours)
+        {
+            ASSERT_NE(w, v);
+            const double distance = std::hypot(
+                sheet.positions[w][0] - sheet.positions[v][0],
+                sheet.positions[w][1] - sheet.positions[v][1]
+            );
+            ASSERT_GE(distance, before - 1e-12);
+            before = distance;
+        }
+    }
+}
+
+TEST(NeighbourhoodSearch, TakesMoreNeighboursWhereTheCentreIsDenser)
+{
+    // An evenly sampled sheet whose middle is pulled together by a smooth map.
+    const auto count_for = [](double power) {
+        const IndexedMesh sheet = test::sample_parametric(
+            [power](double u, double v) {
+                const double x = 2.0 * u - 1.0, y = 2.0 * v - 1.0;
+                const double stretch = std::pow(std::max(1e-9, std::hypot(x, y)), power - 1.0);
+                return std::array{x * stretch, y * stretch, 0.0};
+            },
+            40,
+            40
+        );
+        const OneRings rings(sheet);
+        return NeighbourhoodSearch(sheet, rings).adaptive(20 * 41 + 20).size();
+    };
+    EXPECT_EQ(count_for(6.0), 25U);
+    EXPECT_EQ(count_for(1.0), 20U);
+}
+
+TEST(NeighbourhoodSearch, AdaptsToUnevenSampling)
+{
+    const IndexedMesh sheet = test::sample_parametric(
+        [](double u, double v) {
+            return std::array{u, v, 0.0};
+        },
+        40,
+        40,
+        {},
+        0.45
+    );
+    const OneRings rings(sheet);
+    NeighbourhoodSearch search(sheet, rings);
+    std::array<int, 26> sizes{};
+    for (std::uint32_t v = 0; v < sheet.positions.size(); ++v)
+    {
+        ++sizes[search.adaptive(v).size()];
+    }
+    for (std::size_t size = 17; size <= 22; ++size)
+    {
+        EXPECT_GT(sizes[size], 0) << size << " neighbours";
+    }
+}
+
+TEST(NeighbourhoodSearch, StaysOnItsOwnSheet)
+{
+    // Two sheets a hair apart that share no vertex.
+    IndexedMesh sheets = make_sheet(10);
+    const auto count = static_cast<std::uint32_t>(sheets.positions.size());
+    const std::size_t faces = sheets.triangles.size();
+    for (std::uint32_t v = 0; v < count; ++v)
+    {
+        sheets.positions.push_back({sheets.positions[v][0], sheets.positions[v][1], 1e-6});
+    }
+    for (std::size_t f = 0; f < faces; ++f)
+    {
+        const auto [a, b, c] = sheets.triangles[f];
+        sheets.triangles.push_back({a + count, b + count, c + count});
+    }
+    const OneRings rings(sheets);
+    NeighbourhoodSearch search(sheets, rings);
+    EXPECT_THAT(search.adaptive(60), testing::Each(testing::Lt(count)));
+    EXPECT_THAT(search.adaptive(60 + count), testing::Each(testing::Ge(count)));
+}
+
+TEST(NeighbourhoodSearch, TakesAllThereIsOfASmallComponent)
+{
+    const IndexedMesh triangle{
+        .positions = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}}, .triangles = {{0, 1, 2}}};
+    const OneRings rings(triangle);
+    NeighbourhoodSearch search(triangle, rings);
+    EXPECT_THAT(search.adaptive(0), ElementsAre(1, 2));
+    EXPECT_THAT(search.two_ring(2, 24), ElementsAre(0, 1));
+}
+
+}  // namespace
+}  // namespace vsplit::precompute
