@@ -20,4 +20,8 @@ function(vsplit_target name)
             target_compile_options(${name} PRIVATE -fno-sanitize-recover=undefined)
         endif()
     endif()
+    if(VSPLIT_BUILD_FUZZERS)
+        # Without it libFuzzer sees no coverage inside the libraries and only guesses.
+        target_compile_options(${name} PRIVATE -fsanitize=fuzzer-no-link)
+    endif()
 endfunction()
