@@ -1,0 +1,170 @@
+#pragma once
+
+// Based on: Pajarola, Rossignac, "Compressed Progressive Meshes", 2000. Encoder and decoder run this
+// same code; only the bit coder and the plan differ.
+
+#include "codec/connectivity_coder.h"
+#include "codec/geometry_coder.h"
+#include "codec/refinement_mesh.h"
+#include "core/result.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace vsplit::codec {
+
+/// Everything that lasts from chunk to chunk while a stream is coded.
+struct BatchState
+{
+    RefinementMesh mesh;
+    ConnectivityModel connectivity;
+    GeometryModel geometry;
+    PredictionWeights weights = kInitialWeights;
+    LearningRates rates;
+    std::vector<Split> splits;     ///< Of the current chunk.
+    std::uint32_t level = 0;       ///< Batch levels started.
+    int shift = 0;                 ///< Bits of precision that positions lack.
+    int bits = 12;                 ///< Position bits of the full grid.
+    std::int32_t cursor = 0;       ///< Next face to ask.
+    std::int32_t level_faces = 0;  ///< Faces when the level started.
+
+    /// Largest coordinate on the current grid.
+    [[nodiscard]] std::int32_t max_index() const { return ((1 << bits) - 1) >> shift; }
+};
+
+/// Bits of the field that tells a level's shift.
+inline constexpr int kShiftBits = 5;
+
+/// Starts a level: its shift, one bit an axis and step for every known vertex, then the edges are
+/// measured. `full`: full-precision positions by vertex, encoder only.
+/// Error: BadChunk when the shift grows. Safe on untrusted input.
+template <typename Coder>
+[[nodiscard]] Result<void> code_level_start(
+    Coder& coder,
+    BatchState& state,
+    int new_shift,
+    std::span<const std::array<std::int32_t, 3>> full
+)
+{
+    const auto shift =
+        static_cast<int>(coder.raw(static_cast<std::uint32_t>(new_shift), kShiftBits));
+    if (shift > state.shift)
+    {
+        return fail(ErrorCode::BadChunk, "a level takes precision back");
+    }
+    Point* const points = state.mesh.points();
+    const int steps = state.shift - shift;
+    const auto scale = static_cast<float>(1 << steps);
+    for (std::uint32_t v = 0; steps > 0 && v < state.mesh.vertex_count(); ++v)
+    {
+        std::array<std::uint32_t, 3> low{};
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            std::uint32_t wanted = 0;
+            if constexpr (Coder::kEncodes)
+            {
+                wanted = static_cast<std::uint32_t>(full[v][axis] >> shift);
+            }
+            low[axis] = coder.raw(wanted, steps);
+        }
+        points[v].x = points[v].x * scale + static_cast<float>(low[0]);
+        points[v].y = points[v].y * scale + static_cast<float>(low[1]);
+        points[v].z = points[v].z * scale + static_cast<float>(low[2]);
+    }
+    state.shift = shift;
+    state.mesh.start_level();
+    ++state.level;
+    state.rates = LearningRates::of_level(state.level);
+    state.cursor = 0;
+    state.level_faces = static_cast<std::int32_t>(state.mesh.face_count());
+    return {};
+}
+
+/// Codes where the next `count` splits of the level are; they are in state.splits afterwards.
+/// Error: BadChunk when the level has no room for so many. Safe on untrusted input.
+template <typename Coder>
+[[nodiscard]] Result<void> code_connectivity(
+    Coder& coder, BatchState& state, std::uint32_t count, const SplitPlan* plan
+)
+{
+    state.splits.clear();
+    ConnectivityCoder<Coder> connectivity(state.mesh, state.connectivity, coder, state.rates, plan);
+    if (!connectivity.run(state.cursor, state.level_faces, count, state.splits))
+    {
+        return fail(ErrorCode::BadChunk, "a chunk announces more splits than it holds");
+    }
+    return {};
+}
+
+/// Codes whether the chunk changes the prediction weights, and to what.
+template <typename Coder>
+void code_weights(Coder& coder, BatchState& state, bool changed, const PredictionWeights& weights)
+{
+    if (coder.raw(changed ? 1U : 0U, 1) == 0)
+    {
+        return;
+    }
+    for (std::size_t i = 0; i < weights.size(); ++i)
+    {
+        state.weights[i] =
+            static_cast<std::int8_t>(coder.raw(static_cast<std::uint8_t>(weights[i]), 8));
+    }
+}
+
+/// Asks the memory for what the split a few places further will need.
+inline void prefetch_ring(const RefinementMesh& mesh, const Split& split)
+{
+    const Face& face = mesh.faces()[face_of(split.first)];
+    for (std::size_t k = 0; k < 3; ++k)
+    {
+        __builtin_prefetch(&mesh.points()[face.vertex[k]]);
+        __builtin_prefetch(&mesh.faces()[face_of(face.opposite[k])]);
+    }
+}
+
+/// Codes the positions of the removed vertices of state.splits; they are in place behind the known
+/// vertices afterwards. `actual`: position of the i-th split on the current grid, encoder only.
+/// Error: BadChunk when a position leaves the grid. Safe on untrusted input.
+template <typename Coder>
+[[nodiscard]] Result<void> code_positions(
+    Coder& coder, BatchState& state, std::span<const std::array<std::int32_t, 3>> actual
+)
+{
+    Point* const next = state.mesh.points() + state.mesh.vertex_count();
+    const std::int32_t most = state.max_index();
+    constexpr std::size_t kAhead = 4;
+    for (std::size_t i = 0; i < state.splits.size(); ++i)
+    {
+        if (i + kAhead < state.splits.size())
+        {
+            prefetch_ring(state.mesh, state.splits[i + kAhead]);
+        }
+        const Split& split = state.splits[i];
+        const RingFrame frame = make_frame(collect_ring(state.mesh, split), split.kind);
+        std::array<std::int32_t, 3> wanted{};
+        if constexpr (Coder::kEncodes)
+        {
+            wanted = actual[i];
+        }
+        const auto position = code_position(
+            coder, state.geometry, frame, state.weights, split.kind != SplitKind::Interior, wanted
+        );
+        for (const std::int32_t coordinate : position)
+        {
+            if (coordinate < 0 || coordinate > most)
+            {
+                return fail(ErrorCode::BadChunk, "a vertex lies outside the grid");
+            }
+        }
+        next[i] = Point{
+            static_cast<float>(position[0]),
+            static_cast<float>(position[1]),
+            static_cast<float>(position[2]),
+        };
+    }
+    return {};
+}
+
+}  // namespace vsplit::codec

@@ -1,0 +1,86 @@
+// Based on: Duda, "Asymmetric numeral systems", 2013, in Draco's implementation (rABS).
+#include "codec/entropy_coder.h"
+
+#include "core/byte_reader.h"
+
+#include <limits>
+
+namespace vsplit::codec {
+
+std::uint32_t BitEncoder::raw(std::uint32_t value, int count)
+{
+    const std::uint32_t kept = value & static_cast<std::uint32_t>((1ULL << count) - 1ULL);
+    pending_ |= std::uint64_t{kept} << pending_bits_;
+    pending_bits_ += count;
+    while (pending_bits_ >= 8)
+    {
+        raw_.push_back(static_cast<std::byte>(pending_ & 0xFFU));
+        pending_ >>= 8;
+        pending_bits_ -= 8;
+    }
+    return kept;
+}
+
+void BitEncoder::finish(ByteWriter& out)
+{
+    if (pending_bits_ > 0)
+    {
+        raw_.push_back(static_cast<std::byte>(pending_ & 0xFFU));
+    }
+    // A modelled bit costs at most eight bits; the state adds at most three bytes.
+    std::vector<std::uint8_t> buffer(modelled_.size() + 8);
+    draco::AnsCoder coder;
+    draco::ans_write_init(&coder, buffer.data());
+    for (auto symbol = modelled_.rbegin(); symbol != modelled_.rend(); ++symbol)
+    {
+        draco::rabs_desc_write(&coder, *symbol & 1, static_cast<draco::AnsP8>(*symbol >> 1));
+    }
+    const auto length = static_cast<std::size_t>(draco::ans_write_end(&coder));
+    out.write_varint(raw_.size());
+    out.write_bytes(raw_);
+    out.write_bytes(std::as_bytes(std::span(buffer).first(length)));
+    modelled_.clear();
+    raw_.clear();
+    pending_ = 0;
+    pending_bits_ = 0;
+}
+
+Result<void> BitDecoder::start(std::span<const std::byte> bytes)
+{
+    ByteReader reader(bytes);
+    const auto raw_bytes = reader.read_varint();
+    VSPLIT_TRY(raw_bytes);
+    if (*raw_bytes > reader.remaining())
+    {
+        return fail(ErrorCode::BadChunk, "the raw bits are longer than their chunk");
+    }
+    raw_ = *reader.read_bytes(static_cast<std::size_t>(*raw_bytes));
+    raw_position_ = 0;
+    pending_ = 0;
+    pending_bits_ = 0;
+    const auto modelled = *reader.read_bytes(reader.remaining());
+    constexpr auto kMost = static_cast<std::size_t>(std::numeric_limits<int>::max());
+    if (modelled.empty() || modelled.size() > kMost ||
+        draco::ans_read_init(
+            &ans_,
+            reinterpret_cast<const std::uint8_t*>(modelled.data()),
+            static_cast<int>(modelled.size())
+        ) != 0)
+    {
+        return fail(ErrorCode::BadChunk, "the modelled bits do not start");
+    }
+    return {};
+}
+
+Result<void> BitDecoder::finish() const
+{
+    draco::AnsDecoder ans = ans_;
+    if (raw_position_ != raw_.size() || pending_ != 0 || ans.buf_offset != 0 ||
+        draco::ans_read_end(&ans) == 0)
+    {
+        return fail(ErrorCode::BadChunk, "a chunk does not end where its contents do");
+    }
+    return {};
+}
+
+}  // namespace vsplit::codec

@@ -1,0 +1,101 @@
+#pragma once
+
+#include "core/byte_writer.h"
+#include "core/result.h"
+
+#include <draco/compression/entropy/ans.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace vsplit::codec {
+
+/// Rounds the probability of a one, in 1/65536, to the 8-bit probability of a zero that Draco's
+/// binary rANS coder takes, in 1/256. Never 0 or 256, so every bit stays codable.
+[[nodiscard]] inline std::uint8_t zero_probability(std::uint32_t one_probability)
+{
+    const auto zero = static_cast<std::int32_t>(256U - ((one_probability + 128U) >> 8));
+    return static_cast<std::uint8_t>(std::clamp(zero, 1, 255));
+}
+
+/// Collects the bits of one chunk: modelled bits for Draco's rANS coder, which writes last to first,
+/// and raw bits. Has the interface of BitDecoder, so that models are written once for both. Not
+/// thread safe.
+class BitEncoder
+{
+public:
+    /// Tells templates which side they are on.
+    static constexpr bool kEncodes = true;
+
+    /// Takes one bit whose probability of being one is `one_probability` / 65536; returns it.
+    bool bit(std::uint32_t one_probability, bool value)
+    {
+        modelled_.push_back(
+            static_cast<std::uint16_t>(zero_probability(one_probability) * 2U + (value ? 1U : 0U))
+        );
+        return value;
+    }
+
+    /// Takes the low `count` (0 .. 24) bits of `value` as they are; returns them.
+    std::uint32_t raw(std::uint32_t value, int count);
+
+    /// Appends the chunk's bytes to `out` and forgets its bits. Precondition: none. Layout: length of
+    /// the raw part as varint, raw part, rANS part (proto/STREAM_FORMAT.md, "Bit streams").
+    void finish(ByteWriter& out);
+
+private:
+    std::vector<std::uint16_t> modelled_;
+    std::vector<std::byte> raw_;
+    std::uint64_t pending_ = 0;
+    int pending_bits_ = 0;
+};
+
+/// Reads the bits of one chunk in the order in which BitEncoder took them. Reading past the end
+/// yields zeros and is reported by finish(). Not thread safe. Safe on untrusted input.
+class BitDecoder
+{
+public:
+    /// Tells templates which side they are on.
+    static constexpr bool kEncodes = false;
+
+    /// Starts on a chunk's bytes, which must outlive the decoder. Errors: Truncated, BadChunk.
+    [[nodiscard]] Result<void> start(std::span<const std::byte> bytes);
+
+    /// Reads one bit whose probability of being one is `one_probability` / 65536.
+    bool bit(std::uint32_t one_probability, bool /*value*/ = false)
+    {
+        return draco::rabs_desc_read(&ans_, zero_probability(one_probability)) != 0;
+    }
+
+    /// Reads `count` (0 .. 24) raw bits.
+    std::uint32_t raw(std::uint32_t /*value*/, int count)
+    {
+        while (pending_bits_ < count)
+        {
+            const std::uint64_t byte =
+                raw_position_ < raw_.size() ? static_cast<std::uint64_t>(raw_[raw_position_]) : 0U;
+            pending_ |= byte << pending_bits_;
+            ++raw_position_;
+            pending_bits_ += 8;
+        }
+        const auto value = static_cast<std::uint32_t>(pending_ & ((1ULL << count) - 1ULL));
+        pending_ >>= count;
+        pending_bits_ -= count;
+        return value;
+    }
+
+    /// Checks that exactly the chunk's bits were read. Error: BadChunk.
+    [[nodiscard]] Result<void> finish() const;
+
+private:
+    draco::AnsDecoder ans_;
+    std::span<const std::byte> raw_;
+    std::size_t raw_position_ = 0;
+    std::uint64_t pending_ = 0;
+    int pending_bits_ = 0;
+};
+
+}  // namespace vsplit::codec

@@ -1,0 +1,303 @@
+// Based on: Rossignac, Safonova, Szymczak, "3D Compression Made Simple: Edgebreaker on a Corner Table",
+// 2001 (corner table); Hoppe, "Progressive Meshes", 1996 (vertex split).
+#include "codec/refinement_mesh.h"
+
+#include "codec/float_log.h"
+#include "codec/vector3.h"
+#include "core/assert.h"
+
+#include <algorithm>
+
+namespace vsplit::codec {
+namespace {
+
+/// A directed edge of the base mesh and the corner across from it.
+struct EdgeKey
+{
+    std::uint64_t vertices = 0;
+    Corner corner = -1;
+};
+
+std::uint8_t edge_log(const Vector3& edge)
+{
+    return static_cast<std::uint8_t>(std::min(255, steps_log2<3>(dot(edge, edge) + 1.0F)));
+}
+
+}  // namespace
+
+void RefinementMesh::reserve(
+    std::uint32_t vertices, std::uint32_t faces, std::uint32_t largest_level
+)
+{
+    storage_.assign(std::size_t{faces} + 1, Face{});
+    storage_.front().state = FaceState::Boundary;
+    added_.assign(largest_level, Face{});
+    places_.assign(faces, 0);
+    points_.assign(vertices, Point{});
+    valences_.assign(vertices, 0);
+}
+
+Result<void> RefinementMesh::set_base(const GridMesh& base, std::int32_t max_index)
+{
+    vertex_count_ = static_cast<std::uint32_t>(base.positions.size());
+    face_count_ = static_cast<std::uint32_t>(base.triangles.size());
+    VSPLIT_ASSERT(vertex_count_ <= points_.size() && face_count_ <= face_capacity());
+    for (std::uint32_t v = 0; v < vertex_count_; ++v)
+    {
+        for (const std::int32_t coordinate : base.positions[v])
+        {
+            if (coordinate < 0 || coordinate > max_index)
+            {
+                return fail(ErrorCode::BadChunk, "a base vertex lies outside the grid");
+            }
+        }
+        const auto& [x, y, z] = base.positions[v];
+        points_[v] = Point{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
+    }
+    for (std::uint32_t f = 0; f < face_count_; ++f)
+    {
+        const Triangle& triangle = base.triangles[f];
+        if (std::ranges::any_of(triangle, [&](std::uint32_t v) { return v >= vertex_count_; }) ||
+            triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0])
+        {
+            return fail(ErrorCode::BadChunk, "a base triangle is malformed");
+        }
+        faces()[f] = Face{.vertex = triangle, .slot = f};
+    }
+    VSPLIT_TRY(link_base());
+    return check_fans();
+}
+
+Result<void> RefinementMesh::link_base()
+{
+    std::vector<EdgeKey> edges;
+    edges.reserve(std::size_t{face_count_} * 3);
+    for (std::uint32_t f = 0; f < face_count_; ++f)
+    {
+        for (Corner k = 0; k < 3; ++k)
+        {
+            const Corner corner = static_cast<Corner>(f) * 4 + k;
+            const std::uint64_t from = vertex(next_corner(corner));
+            edges.push_back({from << 32 | vertex(previous_corner(corner)), corner});
+        }
+    }
+    const auto by_vertices = [](const EdgeKey& a, const EdgeKey& b) {
+        return a.vertices < b.vertices;
+    };
+    std::ranges::sort(edges, by_vertices);
+    for (std::size_t i = 0; i < edges.size(); ++i)
+    {
+        if (i > 0 && edges[i].vertices == edges[i - 1].vertices)
+        {
+            return fail(ErrorCode::BadChunk, "the base mesh is not a 2-manifold");
+        }
+        const EdgeKey twin{edges[i].vertices << 32 | edges[i].vertices >> 32, -1};
+        const auto found = std::ranges::lower_bound(edges, twin, by_vertices);
+        if (found != edges.end() && found->vertices == twin.vertices)
+        {
+            faces()[face_of(edges[i].corner)]
+                .opposite[static_cast<std::size_t>(edges[i].corner & 3)] = found->corner;
+        }
+    }
+    return {};
+}
+
+Result<void> RefinementMesh::check_fans()
+{
+    std::vector<std::uint32_t> corners(vertex_count_, 0);
+    std::vector<Corner> some(vertex_count_, -1);
+    for (std::uint32_t f = 0; f < face_count_; ++f)
+    {
+        for (Corner k = 0; k < 3; ++k)
+        {
+            const Corner corner = static_cast<Corner>(f) * 4 + k;
+            ++corners[vertex(corner)];
+            some[vertex(corner)] = corner;
+        }
+    }
+    for (std::uint32_t v = 0; v < vertex_count_; ++v)
+    {
+        if (some[v] < 0)
+        {
+            return fail(ErrorCode::BadChunk, "a base vertex belongs to no triangle");
+        }
+        std::uint32_t visited = 0;
+        bool closed = false;
+        Corner corner = some[v];
+        while (corner >= 0 && !closed)
+        {
+            ++visited;
+            const Corner across = opposite(next_corner(corner));
+            corner = across < 0 ? -1 : next_corner(across);
+            closed = corner == some[v];
+        }
+        corner = some[v];
+        while (!closed && corner >= 0)
+        {
+            const Corner across = opposite(previous_corner(corner));
+            corner = across < 0 ? -1 : previous_corner(across);
+            visited += corner >= 0 ? 1 : 0;
+        }
+        if (visited != corners[v])
+        {
+            return fail(ErrorCode::BadChunk, "the base mesh has a non-manifold vertex");
+        }
+        valences_[v] = static_cast<std::uint8_t>(std::min(255U, corners[v] + (closed ? 0U : 1U)));
+    }
+    return {};
+}
+
+void RefinementMesh::start_level()
+{
+    for (std::uint32_t f = 0; f < face_count_; ++f)
+    {
+        Face& face = faces()[f];
+        const Vector3 a = to_vector(points_[face.vertex[0]]);
+        const Vector3 b = to_vector(points_[face.vertex[1]]);
+        const Vector3 c = to_vector(points_[face.vertex[2]]);
+        face.edge_log = {edge_log(c - b), edge_log(a - c), edge_log(b - a)};
+        face.state = FaceState::Free;
+    }
+    level_start_ = face_count_;
+}
+
+void RefinementMesh::link(Corner a, Corner b)
+{
+    if (a >= 0)
+    {
+        faces()[face_of(a)].opposite[static_cast<std::size_t>(a & 3)] = b;
+    }
+    if (b >= 0)
+    {
+        faces()[face_of(b)].opposite[static_cast<std::size_t>(b & 3)] = a;
+    }
+}
+
+std::int32_t RefinementMesh::add_face(std::array<std::uint32_t, 3> vertices, const Face& like)
+{
+    const auto index = static_cast<std::int32_t>(face_count_++);
+    // Neighbours that are still free read the edge lengths of this face; those of the face it grew
+    // from serve, as long as both sides do the same.
+    faces()[index] = Face{
+        .vertex = vertices,
+        .edge_log = like.edge_log,
+        .state = FaceState::Taken,
+        .slot = static_cast<std::uint32_t>(index),
+    };
+    return index * 4;
+}
+
+void RefinementMesh::split_right(const Split& split, std::uint32_t kept, std::uint32_t removed)
+{
+    const Corner inner = previous_corner(split.first);
+    const Corner outer = opposite(inner);
+    const std::uint32_t right = vertex(next_corner(split.first));
+    const Corner face = add_face({kept, right, removed}, faces()[face_of(split.first)]);
+    link(face, inner);
+    link(face + 2, outer);
+}
+
+void RefinementMesh::split_left(
+    const Split& split, Corner last, std::uint32_t kept, std::uint32_t removed
+)
+{
+    const Corner inner = next_corner(last);
+    const Corner outer = opposite(inner);
+    const std::uint32_t left = vertex(previous_corner(last));
+    const Corner face = add_face({kept, removed, left}, faces()[face_of(last)]);
+    link(face, inner);
+    link(face + 1, outer);
+    if (split.kind == SplitKind::Interior)
+    {
+        link(face + 2, face - 4 + 1);
+    }
+}
+
+void RefinementMesh::apply(std::span<const Split> splits, std::vector<TriangleUpdate>* updates)
+{
+    for (const Split& split : splits)
+    {
+        const std::uint32_t removed = vertex_count_++;
+        const std::uint32_t kept = vertex(split.first);
+        const std::uint32_t first_added = face_count_;
+        Corner corner = split.first;
+        Corner last = corner;
+        for (int i = 0; i < split.wedge; ++i)
+        {
+            last = corner;
+            Face& face = faces()[face_of(corner)];
+            face.vertex[static_cast<std::size_t>(corner & 3)] = removed;
+            if (updates != nullptr)
+            {
+                updates->push_back({face.slot, face.vertex});
+            }
+            const Corner across = opposite(next_corner(corner));
+            corner = i + 1 < split.wedge ? next_corner(across) : corner;
+        }
+        if (split.kind != SplitKind::BoundaryRight)
+        {
+            split_right(split, kept, removed);
+        }
+        if (split.kind != SplitKind::BoundaryLeft)
+        {
+            split_left(split, last, kept, removed);
+        }
+        for (std::uint32_t f = first_added; updates != nullptr && f < face_count_; ++f)
+        {
+            updates->push_back({faces()[f].slot, faces()[f].vertex});
+        }
+        valences_[removed] = static_cast<std::uint8_t>(split.wedge + 2);
+        faces()[split.seed].state =
+            split.kind == SplitKind::Interior ? FaceState::SeedOfTwo : FaceState::SeedOfOne;
+    }
+}
+
+void RefinementMesh::finish_level()
+{
+    const std::uint32_t added = face_count_ - level_start_;
+    std::copy_n(faces() + level_start_, added, added_.begin());
+    std::int32_t place = 0;
+    std::uint32_t next_added = level_start_;
+    const auto children = [](FaceState state) {
+        return state == FaceState::SeedOfTwo ? 2U : state == FaceState::SeedOfOne ? 1U : 0U;
+    };
+    for (std::uint32_t f = 0; f < level_start_; ++f)
+    {
+        places_[f] = place++;
+        for (std::uint32_t i = children(faces()[f].state); i > 0; --i)
+        {
+            places_[next_added++] = place++;
+        }
+    }
+    // Faces only move towards the end, so moving the last one first overwrites nothing.
+    std::uint32_t from = added;
+    for (std::uint32_t f = level_start_; f-- > 0;)
+    {
+        const std::uint32_t count = children(faces()[f].state);
+        Face* const target = faces() + places_[f];
+        from -= count;
+        *target = faces()[f];
+        std::copy_n(added_.begin() + from, count, target + 1);
+    }
+    for (std::uint32_t f = 0; f < face_count_; ++f)
+    {
+        for (Corner& corner : faces()[f].opposite)
+        {
+            corner = corner < 0
+                         ? -1
+                         : places_[static_cast<std::size_t>(face_of(corner))] * 4 + (corner & 3);
+        }
+    }
+}
+
+std::uint32_t RefinementMesh::added_faces(std::span<const Split> splits)
+{
+    std::uint32_t count = 0;
+    for (const Split& split : splits)
+    {
+        count += split.kind == SplitKind::Interior ? 2U : 1U;
+    }
+    return count;
+}
+
+}  // namespace vsplit::codec

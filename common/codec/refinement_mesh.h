@@ -1,0 +1,180 @@
+#pragma once
+
+#include "codec/stream_decoder.h"
+#include "core/result.h"
+#include "mesh/indexed_mesh.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace vsplit::codec {
+
+/// A corner is 4 * face + k, k = 0 .. 2: the k-th vertex of a face, and the edge across from it.
+/// -1 stands for "no corner".
+using Corner = std::int32_t;
+
+/// The face that a corner belongs to; -1 for no corner.
+[[nodiscard]] inline std::int32_t face_of(Corner corner)
+{
+    return corner >> 2;
+}
+
+/// The next corner of the same face, counter-clockwise.
+[[nodiscard]] inline Corner next_corner(Corner corner)
+{
+    return corner + 1 - 3 * ((corner >> 1) & 1);
+}
+
+/// The previous corner of the same face.
+[[nodiscard]] inline Corner previous_corner(Corner corner)
+{
+    return corner + 2 - 3 * ((corner | (corner >> 1)) & 1);
+}
+
+/// Where a face stands in the traversal of a level.
+enum class FaceState : std::uint8_t
+{
+    Free = 0,       ///< May still belong to a split.
+    Taken = 1,      ///< In a wedge, or made by a split of this level.
+    Refused = 2,    ///< Asked, belongs to no split.
+    Boundary = 3,   ///< Not a face: what lies across a boundary edge.
+    SeedOfOne = 4,  ///< In a wedge, the face asked; its split added one face.
+    SeedOfTwo = 5,  ///< In a wedge, the face asked; its split added two faces.
+};
+
+/// A triangle with its neighbours. 32 bytes, so that two share a cache line.
+struct alignas(32) Face
+{
+    std::array<std::uint32_t, 3> vertex{};
+    std::array<Corner, 3> opposite{-1, -1, -1};  ///< Corner across the edge opposite to corner k.
+    std::array<std::uint8_t, 3> edge_log{};  ///< 8 log2(1 + squared length) of the opposite edge.
+    FaceState state = FaceState::Free;
+    std::uint32_t slot = 0;  ///< Its place in the triangle list that callers see.
+};
+
+/// A grid position in units of 2^shift cells; the coordinates are integers held in floats, exact to
+/// 2^24.
+struct alignas(16) Point
+{
+    float x = 0.0F;
+    float y = 0.0F;
+    float z = 0.0F;
+    float unused = 0.0F;
+};
+
+/// How the wedge of a split touches the boundary.
+enum class SplitKind : std::uint8_t
+{
+    Interior = 0,      ///< Two new faces.
+    BoundaryLeft = 1,  ///< The wedge ends at the boundary on its left: one new face, on the right.
+    BoundaryRight =
+        2,  ///< The wedge begins at the boundary on its right: one new face, on the left.
+};
+
+/// A vertex split: `wedge` consecutive faces around the kept vertex pass to the removed vertex.
+///
+///            left                          left
+///           /    \                        / | |
+///      ... /      \ wedge          ... / new| \ wedge
+///        kept------ ...     ==>      kept---removed ...
+///          \      / faces             \ new | /  faces
+///           \    /                        \ | |
+///            right                         right
+///
+/// Glossary (Hoppe 1996 / OpenMesh): kept = v1, removed = v0, left = vl, right = vr.
+struct Split
+{
+    Corner first = -1;         ///< Corner at the kept vertex of the wedge's first (rightmost) face.
+    std::int32_t seed = -1;    ///< The face that the traversal asked.
+    std::uint32_t source = 0;  ///< Encoder only: which planned split this is.
+    std::uint8_t wedge = 0;    ///< Faces in the wedge, 1 .. kMaxWedge.
+    SplitKind kind = SplitKind::Interior;
+};
+
+/// Longest wedge; the removed vertex has at most kMaxWedge + 2 neighbours.
+inline constexpr int kMaxWedge = 4;
+
+/// The mesh while it is refined: faces with neighbours in an order that keeps neighbours close in
+/// memory, positions on the current grid, valences. All memory is reserved up front. Shared by decoder
+/// and encoder. Not thread safe.
+class RefinementMesh
+{
+public:
+    /// Reserves room for the final mesh. `largest_level`: most faces that one level adds.
+    void reserve(std::uint32_t vertices, std::uint32_t faces, std::uint32_t largest_level);
+
+    /// Takes over a base mesh whose positions are in units of 2^shift cells.
+    /// `max_index`: largest coordinate on that grid. Errors: BadChunk when an index or a coordinate is
+    /// out of range or the triangles are not a consistently oriented 2-manifold with boundary.
+    /// Precondition: it fits the reservation. Safe on untrusted input.
+    [[nodiscard]] Result<void> set_base(const GridMesh& base, std::int32_t max_index);
+
+    /// Prepares a level: measures every edge and frees every face.
+    void start_level();
+
+    /// Carries out the splits of one chunk; the removed vertices' positions must be in place at
+    /// vertex_count() onwards. Changed triangles are appended to `updates` when given.
+    /// Precondition: room for the new faces; splits as the connectivity coder made them.
+    void apply(std::span<const Split> splits, std::vector<TriangleUpdate>* updates);
+
+    /// Ends a level: moves new faces beside the face whose wedge they came from, so that neighbours
+    /// stay close in memory. Slots do not change.
+    void finish_level();
+
+    /// Number of faces that a chunk's splits add.
+    [[nodiscard]] static std::uint32_t added_faces(std::span<const Split> splits);
+
+    [[nodiscard]] std::uint32_t vertex_count() const { return vertex_count_; }
+
+    [[nodiscard]] std::uint32_t face_count() const { return face_count_; }
+
+    [[nodiscard]] std::uint32_t face_capacity() const
+    {
+        return static_cast<std::uint32_t>(storage_.size() - 1);
+    }
+
+    /// Faces by index; index -1 is valid and has state Boundary.
+    [[nodiscard]] Face* faces() { return storage_.data() + 1; }
+
+    [[nodiscard]] const Face* faces() const { return storage_.data() + 1; }
+
+    /// Positions by vertex, including those of removed vertices not yet applied.
+    [[nodiscard]] Point* points() { return points_.data(); }
+
+    [[nodiscard]] const Point* points() const { return points_.data(); }
+
+    /// Valences by vertex (edges; 255 stands for 255 or more).
+    [[nodiscard]] std::uint8_t* valences() { return valences_.data(); }
+
+    [[nodiscard]] std::uint32_t vertex(Corner corner) const
+    {
+        return faces()[face_of(corner)].vertex[static_cast<std::size_t>(corner & 3)];
+    }
+
+    [[nodiscard]] Corner opposite(Corner corner) const
+    {
+        return faces()[face_of(corner)].opposite[static_cast<std::size_t>(corner & 3)];
+    }
+
+private:
+    void link(Corner a, Corner b);
+    [[nodiscard]] Result<void> link_base();
+    [[nodiscard]] Result<void> check_fans();
+    std::int32_t add_face(std::array<std::uint32_t, 3> vertices, const Face& like);
+    void split_right(const Split& split, std::uint32_t kept, std::uint32_t removed);
+    void split_left(const Split& split, Corner last, std::uint32_t kept, std::uint32_t removed);
+
+    std::vector<Face> storage_;  ///< One sentinel, then the faces.
+    std::vector<Face> added_;    ///< Room for the faces of the largest level.
+    std::vector<std::int32_t> places_;
+    std::vector<Point> points_;
+    std::vector<std::uint8_t> valences_;
+    std::uint32_t vertex_count_ = 0;
+    std::uint32_t face_count_ = 0;
+    std::uint32_t level_start_ = 0;  ///< Faces when the level started.
+};
+
+}  // namespace vsplit::codec

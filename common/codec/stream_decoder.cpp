@@ -1,0 +1,410 @@
+#include "codec/stream_decoder.h"
+
+#include "codec/base_mesh_decoder.h"
+#include "codec/batch_coder.h"
+#include "codec/entropy_coder.h"
+#include "codec/stitch_coder.h"
+#include "core/assert.h"
+#include "core/crc32c.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+namespace vsplit::codec {
+
+class StreamDecoder::Impl
+{
+public:
+    explicit Impl(const DecodeLimits& limits) : limits_(limits) {}
+
+    std::size_t wanted_bytes() const
+    {
+        const std::size_t needed = unit_bytes();
+        return error_ || needed < buffer_.size() ? 0 : needed - buffer_.size();
+    }
+
+    Result<std::size_t> feed(std::span<const std::byte> bytes)
+    {
+        if (error_)
+        {
+            return tl::unexpected<Error>(*error_);
+        }
+        const std::size_t taken = std::min(bytes.size(), wanted_bytes());
+        buffer_.insert(
+            buffer_.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(taken)
+        );
+        received_ += taken;
+        return taken;
+    }
+
+    Result<Step> step()
+    {
+        if (error_)
+        {
+            return tl::unexpected<Error>(*error_);
+        }
+        if (complete())
+        {
+            return current(StepKind::Complete);
+        }
+        if (buffer_.size() < unit_bytes())
+        {
+            return current(StepKind::NeedBytes);
+        }
+        auto result = info_ ? decode_chunk() : decode_header();
+        if (!result)
+        {
+            error_ = result.error();
+        }
+        return result;
+    }
+
+    bool complete() const { return info_ && next_ == info_->chunks.size(); }
+
+    std::optional<StreamInfo> info_;
+    BatchState state_;
+    std::vector<std::uint32_t> stitches_;
+    std::uint64_t decoded_ = 0;
+    std::uint64_t received_ = 0;
+    std::uint32_t level_ = 0;
+
+private:
+    /// Bytes of the unit that comes next: as much of the header as is known to exist, or a chunk.
+    std::size_t unit_bytes() const
+    {
+        if (info_)
+        {
+            return complete() ? 0 : info_->chunks[next_].bytes;
+        }
+        if (buffer_.size() < header_probe_bytes())
+        {
+            return header_probe_bytes();
+        }
+        // A prefix that does not parse is reported by step(); ask for nothing more.
+        return parse_header_bytes(buffer_, limits_).value_or(0);
+    }
+
+    Step current(StepKind kind) const
+    {
+        Step step;
+        step.kind = kind;
+        step.level = level_;
+        step.vertices = state_.mesh.vertex_count();
+        step.faces = state_.mesh.face_count();
+        step.first_new_vertex = step.vertices;
+        step.first_moved_vertex = step.vertices;
+        return step;
+    }
+
+    void consume_unit()
+    {
+        decoded_ += buffer_.size();
+        buffer_.clear();
+    }
+
+    Result<Step> decode_header()
+    {
+        auto info = parse_stream_info(buffer_, limits_);
+        VSPLIT_TRY(info);
+        info_ = std::move(*info);
+        consume_unit();
+        reserve();
+        return current(StepKind::Header);
+    }
+
+    void reserve()
+    {
+        std::uint32_t largest_level = 0;
+        std::uint32_t largest_batch = 0;
+        std::uint32_t largest_chunk = 0;
+        std::uint32_t level_start = info_->chunks.front().faces;
+        std::uint32_t vertices = info_->chunks.front().vertices;
+        for (const ChunkInfo& chunk : info_->chunks)
+        {
+            largest_chunk = std::max(largest_chunk, chunk.bytes);
+            largest_level = std::max(largest_level, chunk.faces - level_start);
+            largest_batch = std::max(largest_batch, chunk.vertices - vertices);
+            level_start = chunk.ends_level ? chunk.faces : level_start;
+            vertices = chunk.vertices;
+        }
+        state_.bits = info_->grid.bits;
+        state_.mesh.reserve(info_->vertex_count, info_->face_count, largest_level);
+        state_.splits.reserve(largest_batch);
+        buffer_.reserve(largest_chunk);
+        updates_.reserve(std::max<std::size_t>(
+            info_->chunks.front().faces, std::size_t{largest_batch} * kMostUpdates
+        ));
+    }
+
+    Result<Step> decode_chunk()
+    {
+        const ChunkInfo& chunk = info_->chunks[next_];
+        if (crc32c(buffer_) != chunk.checksum)
+        {
+            return fail(ErrorCode::BadChecksum, "a chunk is damaged", chunk.offset);
+        }
+        Step step = current(StepKind::SkippedChunk);
+        step.chunk_bytes = chunk.bytes;
+        updates_.clear();
+        const auto done = decode_contents(chunk, step);
+        if (!done)
+        {
+            return fail(done.error().code, done.error().message, chunk.offset);
+        }
+        step.vertices = state_.mesh.vertex_count();
+        step.faces = state_.mesh.face_count();
+        step.triangles = updates_;
+        if (step.level_complete)
+        {
+            level_ = next_ == 0 ? 0 : level_ + 1;
+        }
+        step.level = level_;
+        ++next_;
+        consume_unit();
+        return step;
+    }
+
+    Result<void> decode_contents(const ChunkInfo& chunk, Step& step)
+    {
+        if (chunk.kind == proto::ChunkKind::Stitch && chunk.codec == 0)
+        {
+            return decode_stitches();
+        }
+        if (static_cast<std::uint8_t>(chunk.kind) >= proto::kFirstOptionalChunkKind)
+        {
+            return {};
+        }
+        step.kind = StepKind::Chunk;
+        step.level_complete = chunk.ends_level;
+        return chunk.kind == proto::ChunkKind::Base ? decode_base(chunk, step)
+                                                    : decode_batch(chunk, step);
+    }
+
+    Result<void> decode_base(const ChunkInfo& chunk, Step& step)
+    {
+        const auto bytes = std::span<const std::byte>(buffer_);
+        if (bytes.empty() || static_cast<int>(bytes[0]) >= info_->grid.bits || !chunk.ends_level)
+        {
+            return fail(ErrorCode::BadChunk, "the base chunk is malformed");
+        }
+        const auto base = decode_base_mesh(bytes.subspan(1), chunk.vertices, chunk.faces);
+        VSPLIT_TRY(base);
+        state_.shift = static_cast<int>(bytes[0]);
+        VSPLIT_TRY(state_.mesh.set_base(*base, state_.max_index()));
+        for (std::uint32_t f = 0; f < chunk.faces; ++f)
+        {
+            updates_.push_back({f, base->triangles[f]});
+        }
+        step.first_new_vertex = 0;
+        step.first_moved_vertex = 0;
+        return {};
+    }
+
+    Result<void> decode_batch(const ChunkInfo& chunk, Step& step)
+    {
+        BitDecoder bits;
+        VSPLIT_TRY(bits.start(buffer_));
+        const int shift = state_.shift;
+        if (info_->chunks[next_ - 1].ends_level)
+        {
+            VSPLIT_TRY(code_level_start(bits, state_, 0, {}));
+        }
+        step.first_moved_vertex = state_.shift == shift ? step.first_new_vertex : 0;
+        const std::uint32_t count = chunk.vertices - state_.mesh.vertex_count();
+        VSPLIT_TRY(code_connectivity(bits, state_, count, nullptr));
+        code_weights(bits, state_, false, {});
+        VSPLIT_TRY(code_positions(bits, state_, {}));
+        VSPLIT_TRY(bits.finish());
+        if (RefinementMesh::added_faces(state_.splits) != chunk.faces - state_.mesh.face_count())
+        {
+            return fail(ErrorCode::BadChunk, "a chunk adds other faces than the index says");
+        }
+        state_.mesh.apply(state_.splits, &updates_);
+        if (chunk.ends_level)
+        {
+            state_.mesh.finish_level();
+        }
+        return {};
+    }
+
+    Result<void> decode_stitches()
+    {
+        if (state_.mesh.vertex_count() != info_->vertex_count || state_.shift != 0)
+        {
+            return fail(ErrorCode::BadChunk, "a stitch chunk comes before the last level");
+        }
+        BitDecoder bits;
+        VSPLIT_TRY(bits.start(buffer_));
+        stitches_.assign(info_->vertex_count, 0);
+        code_stitches(
+            bits, [this](std::uint32_t v) { return grid_position(v); }, stitches_
+        );
+        return bits.finish();
+    }
+
+    static constexpr std::size_t kMostUpdates = kMaxWedge + 2;
+
+    DecodeLimits limits_;
+    std::vector<std::byte> buffer_;
+    std::vector<TriangleUpdate> updates_;
+    std::optional<Error> error_;
+    std::size_t next_ = 0;
+
+public:
+    std::array<std::int32_t, 3> grid_position(std::uint32_t vertex) const
+    {
+        const Point& point = state_.mesh.points()[vertex];
+        return {
+            static_cast<std::int32_t>(point.x),
+            static_cast<std::int32_t>(point.y),
+            static_cast<std::int32_t>(point.z),
+        };
+    }
+};
+
+StreamDecoder::StreamDecoder(const DecodeLimits& limits) : impl_(std::make_unique<Impl>(limits)) {}
+
+StreamDecoder::~StreamDecoder() = default;
+StreamDecoder::StreamDecoder(StreamDecoder&&) noexcept = default;
+StreamDecoder& StreamDecoder::operator=(StreamDecoder&&) noexcept = default;
+
+Result<std::size_t> StreamDecoder::feed(std::span<const std::byte> bytes)
+{
+    return impl_->feed(bytes);
+}
+
+std::size_t StreamDecoder::wanted_bytes() const
+{
+    return impl_->wanted_bytes();
+}
+
+Result<Step> StreamDecoder::step()
+{
+    return impl_->step();
+}
+
+const StreamInfo* StreamDecoder::info() const
+{
+    return impl_->info_ ? &*impl_->info_ : nullptr;
+}
+
+std::uint64_t StreamDecoder::decoded_bytes() const
+{
+    return impl_->decoded_;
+}
+
+std::uint64_t StreamDecoder::received_bytes() const
+{
+    return impl_->received_;
+}
+
+bool StreamDecoder::complete() const
+{
+    return impl_->complete();
+}
+
+std::uint32_t StreamDecoder::level() const
+{
+    return impl_->level_;
+}
+
+std::uint32_t StreamDecoder::vertices() const
+{
+    return impl_->state_.mesh.vertex_count();
+}
+
+std::uint32_t StreamDecoder::faces() const
+{
+    return impl_->state_.mesh.face_count();
+}
+
+int StreamDecoder::shift() const
+{
+    return impl_->state_.shift;
+}
+
+void StreamDecoder::write_positions(std::uint32_t first, std::uint32_t count, std::span<float> out)
+    const
+{
+    VSPLIT_ASSERT(std::uint64_t{first} + count <= vertices() && out.size() >= 3ULL * count);
+    for (std::uint32_t i = 0; i < count; ++i)
+    {
+        const auto point =
+            dequantize(impl_->info_->grid, impl_->grid_position(first + i), impl_->state_.shift);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            out[3ULL * i + axis] = static_cast<float>(point[axis]);
+        }
+    }
+}
+
+std::array<std::int32_t, 3> StreamDecoder::grid_position(std::uint32_t vertex) const
+{
+    return impl_->grid_position(vertex);
+}
+
+void StreamDecoder::write_triangles(std::span<Triangle> out) const
+{
+    VSPLIT_ASSERT(out.size() >= faces());
+    for (std::uint32_t f = 0; f < faces(); ++f)
+    {
+        const Face& face = impl_->state_.mesh.faces()[f];
+        out[face.slot] = face.vertex;
+    }
+}
+
+std::span<const std::uint32_t> StreamDecoder::stitches() const
+{
+    return complete() ? std::span<const std::uint32_t>(impl_->stitches_)
+                      : std::span<const std::uint32_t>{};
+}
+
+IndexedMesh extract_mesh(const StreamDecoder& decoder, bool stitch)
+{
+    IndexedMesh mesh;
+    mesh.triangles.resize(decoder.faces());
+    decoder.write_triangles(mesh.triangles);
+    const auto stitches = stitch ? decoder.stitches() : std::span<const std::uint32_t>{};
+    std::vector<std::uint32_t> place(stitches.size(), 0);
+    for (std::uint32_t v = 0; v < decoder.vertices(); ++v)
+    {
+        if (!stitches.empty() && stitches[v] != v)
+        {
+            place[v] = place[stitches[v]];
+            continue;
+        }
+        if (!stitches.empty())
+        {
+            place[v] = static_cast<std::uint32_t>(mesh.positions.size());
+        }
+        mesh.positions.push_back(
+            dequantize(decoder.info()->grid, decoder.grid_position(v), decoder.shift())
+        );
+    }
+    if (!stitches.empty())
+    {
+        for (Triangle& triangle : mesh.triangles)
+        {
+            std::ranges::transform(triangle, triangle.begin(), [&](std::uint32_t v) {
+                return place[v];
+            });
+        }
+    }
+    return mesh;
+}
+
+GridMesh extract_grid_mesh(const StreamDecoder& decoder)
+{
+    VSPLIT_ASSERT(decoder.complete());
+    GridMesh mesh;
+    mesh.triangles.resize(decoder.faces());
+    decoder.write_triangles(mesh.triangles);
+    for (std::uint32_t v = 0; v < decoder.vertices(); ++v)
+    {
+        mesh.positions.push_back(decoder.grid_position(v));
+    }
+    return mesh;
+}
+
+}  // namespace vsplit::codec

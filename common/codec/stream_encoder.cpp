@@ -1,0 +1,341 @@
+#include "codec/stream_encoder.h"
+
+#include "codec/base_mesh_encoder.h"
+#include "codec/batch_coder.h"
+#include "codec/entropy_coder.h"
+#include "codec/stitch_coder.h"
+#include "codec/stream_header_writer.h"
+#include "codec/weight_fit.h"
+#include "core/crc32c.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace vsplit::codec {
+namespace {
+
+constexpr std::uint32_t kNoVertex = 0xFFFFFFFF;
+
+/// Splits per chunk until the first chunk has told what they cost.
+constexpr std::uint32_t kFirstChunkSplits = 8192;
+
+/// Builds the stream chunk by chunk, keeping the mesh as the decoder will have it.
+class StreamBuilder
+{
+public:
+    StreamBuilder(const StreamPlan& plan, const std::function<void(double)>& progress)
+        : plan_(plan), progress_(progress), place_(plan.mesh->positions.size(), kNoVertex)
+    {
+    }
+
+    Result<std::vector<std::byte>> run()
+    {
+        VSPLIT_TRY(add_base());
+        for (std::size_t level = 1; level < plan_.levels.size(); ++level)
+        {
+            VSPLIT_TRY(add_level(plan_.levels[level]));
+        }
+        if (state_.mesh.vertex_count() != plan_.mesh->positions.size() ||
+            state_.mesh.face_count() != plan_.mesh->triangles.size() || state_.shift != 0)
+        {
+            return fail(ErrorCode::Internal, "the collapse sequence does not undo itself");
+        }
+        add_stitches();
+        return assemble();
+    }
+
+private:
+    std::array<std::int32_t, 3> on_grid(std::uint32_t source, int shift) const
+    {
+        std::array<std::int32_t, 3> position = plan_.mesh->positions[source];
+        for (std::int32_t& coordinate : position)
+        {
+            coordinate >>= shift;
+        }
+        return position;
+    }
+
+    void add_chunk(
+        proto::ChunkKind kind, std::span<const std::byte> bytes, const PlannedLevel* ends
+    )
+    {
+        ChunkInfo chunk;
+        chunk.kind = kind;
+        chunk.ends_level = ends != nullptr || kind == proto::ChunkKind::Stitch;
+        chunk.bytes = static_cast<std::uint32_t>(bytes.size());
+        chunk.checksum = crc32c(bytes);
+        chunk.vertices = state_.mesh.vertex_count();
+        chunk.faces = state_.mesh.face_count();
+        if (ends != nullptr)
+        {
+            chunk.rms_error = ends->rms_error;
+            chunk.max_error = ends->max_error;
+        }
+        chunks_.push_back(chunk);
+        payload_.write_bytes(bytes);
+        if (progress_)
+        {
+            progress_(
+                static_cast<double>(chunk.vertices) /
+                static_cast<double>(plan_.mesh->positions.size())
+            );
+        }
+    }
+
+    /// Makes a vertex the next one of the stream.
+    void place_vertex(std::uint32_t source)
+    {
+        place_[source] = static_cast<std::uint32_t>(source_.size());
+        source_.push_back(source);
+        full_.push_back(plan_.mesh->positions[source]);
+    }
+
+    Result<void> add_base()
+    {
+        const PlannedLevel& level = plan_.levels.front();
+        GridMesh base;
+        std::vector<std::uint32_t> sources;
+        std::vector<std::uint32_t> place(plan_.mesh->positions.size(), kNoVertex);
+        for (const Triangle& triangle : plan_.base_triangles)
+        {
+            Triangle renumbered{};
+            for (std::size_t k = 0; k < 3; ++k)
+            {
+                std::uint32_t& index = place[triangle[k]];
+                if (index == kNoVertex)
+                {
+                    index = static_cast<std::uint32_t>(sources.size());
+                    sources.push_back(triangle[k]);
+                    base.positions.push_back(on_grid(triangle[k], level.shift));
+                }
+                renumbered[k] = index;
+            }
+            base.triangles.push_back(renumbered);
+        }
+        const auto encoded = encode_base_mesh(base);
+        VSPLIT_TRY(encoded);
+        for (const std::uint32_t vertex : encoded->vertices)
+        {
+            place_vertex(sources[vertex]);
+        }
+        reserve();
+        state_.bits = plan_.grid.bits;
+        state_.shift = level.shift;
+        VSPLIT_TRY(state_.mesh.set_base(encoded->decoded, state_.max_index()));
+        ByteWriter chunk;
+        chunk.write(static_cast<std::uint8_t>(level.shift));
+        chunk.write_bytes(encoded->bytes);
+        add_chunk(proto::ChunkKind::Base, chunk.view(), &level);
+        return {};
+    }
+
+    void reserve()
+    {
+        std::size_t largest_level = 0;
+        for (const PlannedLevel& level : plan_.levels)
+        {
+            largest_level = std::max(largest_level, level.collapses.size() * 2);
+        }
+        state_.mesh.reserve(
+            static_cast<std::uint32_t>(plan_.mesh->positions.size()),
+            static_cast<std::uint32_t>(plan_.mesh->triangles.size()),
+            static_cast<std::uint32_t>(largest_level)
+        );
+    }
+
+    /// Finds the corner at which a collapse's wedge begins in the coarse mesh.
+    Corner find_wedge(const Collapse& collapse, Corner some) const
+    {
+        const RefinementMesh& mesh = state_.mesh;
+        const std::uint32_t right = place_[collapse.right];
+        const auto found = [&](Corner corner) { return mesh.vertex(next_corner(corner)) == right; };
+        Corner corner = some;
+        do
+        {
+            if (found(corner))
+            {
+                return corner;
+            }
+            const Corner across = mesh.opposite(next_corner(corner));
+            corner = across < 0 ? -1 : next_corner(across);
+        }
+        while (corner >= 0 && corner != some);
+        corner = corner < 0 ? some : -1;
+        while (corner >= 0 && !found(corner))
+        {
+            const Corner across = mesh.opposite(previous_corner(corner));
+            corner = across < 0 ? -1 : previous_corner(across);
+        }
+        return corner;
+    }
+
+    Result<SplitPlan> plan_splits(const PlannedLevel& level)
+    {
+        const RefinementMesh& mesh = state_.mesh;
+        std::vector<Corner> corner_of(mesh.vertex_count(), -1);
+        for (std::uint32_t f = 0; f < mesh.face_count(); ++f)
+        {
+            for (Corner k = 0; k < 3; ++k)
+            {
+                corner_of[mesh.vertex(static_cast<Corner>(f) * 4 + k)] =
+                    static_cast<Corner>(f) * 4 + k;
+            }
+        }
+        SplitPlan plan;
+        plan.split_of_face.assign(mesh.face_count(), SplitPlan::kNoSplit);
+        for (const Collapse& collapse : level.collapses)
+        {
+            Split split;
+            split.first = find_wedge(collapse, corner_of[place_[collapse.kept]]);
+            split.wedge = collapse.wedge;
+            split.kind = collapse.kind;
+            Corner corner = split.first;
+            for (int i = 0; i < split.wedge; ++i)
+            {
+                if (corner < 0 || plan.split_of_face[static_cast<std::size_t>(face_of(corner))] !=
+                                      SplitPlan::kNoSplit)
+                {
+                    return fail(ErrorCode::Internal, "a level's collapses are not independent");
+                }
+                plan.split_of_face[static_cast<std::size_t>(face_of(corner))] =
+                    static_cast<std::uint32_t>(plan.splits.size());
+                const Corner across = mesh.opposite(next_corner(corner));
+                corner = across < 0 ? -1 : next_corner(across);
+            }
+            plan.splits.push_back(split);
+        }
+        return plan;
+    }
+
+    Result<void> add_level(const PlannedLevel& level)
+    {
+        BitEncoder bits;
+        VSPLIT_TRY(code_level_start(bits, state_, level.shift, full_));
+        const auto plan = plan_splits(level);
+        VSPLIT_TRY(plan);
+        std::size_t left = level.collapses.size();
+        do
+        {
+            const std::size_t chunks = (left + chunk_splits_ - 1) / chunk_splits_;
+            const std::size_t count = chunks > 1 ? (left + chunks - 1) / chunks : left;
+            VSPLIT_TRY(
+                add_batch(bits, level, *plan, static_cast<std::uint32_t>(count), count == left)
+            );
+            left -= count;
+        }
+        while (left > 0);
+        state_.mesh.finish_level();
+        return {};
+    }
+
+    Result<void> add_batch(
+        BitEncoder& bits,
+        const PlannedLevel& level,
+        const SplitPlan& plan,
+        std::uint32_t count,
+        bool ends_level
+    )
+    {
+        VSPLIT_TRY(code_connectivity(bits, state_, count, &plan));
+        std::vector<std::array<std::int32_t, 3>> positions;
+        std::vector<FitSample> samples;
+        for (const Split& split : state_.splits)
+        {
+            const std::uint32_t removed = level.collapses[split.source].removed;
+            positions.push_back(on_grid(removed, state_.shift));
+            place_vertex(removed);
+            if (split.kind == SplitKind::Interior)
+            {
+                samples.push_back(
+                    {make_frame(collect_ring(state_.mesh, split), split.kind), positions.back()}
+                );
+            }
+        }
+        const auto fitted = fit_weights(samples, state_.weights);
+        code_weights(bits, state_, fitted.has_value(), fitted.value_or(state_.weights));
+        VSPLIT_TRY(code_positions(bits, state_, positions));
+        state_.mesh.apply(state_.splits, nullptr);
+        ByteWriter chunk;
+        bits.finish(chunk);
+        adapt_chunk_size(chunk.size(), count);
+        add_chunk(proto::ChunkKind::Batch, chunk.view(), ends_level ? &level : nullptr);
+        return {};
+    }
+
+    /// Chooses how many splits the next chunk may hold, from what they cost in this one.
+    void adapt_chunk_size(std::size_t bytes, std::uint32_t count)
+    {
+        if (count >= 256)
+        {
+            const std::size_t fitting = proto::kTargetChunkBytes * 9ULL / 10ULL * count / bytes;
+            chunk_splits_ = std::max<std::size_t>(fitting, 256);
+        }
+    }
+
+    void add_stitches()
+    {
+        if (plan_.stitches.empty())
+        {
+            return;
+        }
+        // By class of the plan the first vertex of the stream that belongs to it.
+        std::vector<std::uint32_t> first(source_.size(), kNoVertex);
+        std::vector<std::uint32_t> stitches(source_.size());
+        for (std::uint32_t v = 0; v < source_.size(); ++v)
+        {
+            std::uint32_t& representative = first[plan_.stitches[source_[v]]];
+            representative = std::min(representative, v);
+            stitches[v] = representative;
+        }
+        BitEncoder bits;
+        code_stitches(
+            bits, [this](std::uint32_t v) { return full_[v]; }, stitches
+        );
+        ByteWriter chunk;
+        bits.finish(chunk);
+        add_chunk(proto::ChunkKind::Stitch, chunk.view(), nullptr);
+    }
+
+    std::vector<std::byte> assemble()
+    {
+        StreamInfo info;
+        info.grid = plan_.grid;
+        info.vertex_count = state_.mesh.vertex_count();
+        info.face_count = state_.mesh.face_count();
+        info.chunks = std::move(chunks_);
+        std::array<std::int32_t, 3> extent{};
+        for (const auto& position : plan_.mesh->positions)
+        {
+            for (std::size_t axis = 0; axis < 3; ++axis)
+            {
+                extent[axis] = std::max(extent[axis], position[axis]);
+            }
+        }
+        std::vector<std::byte> file = write_stream_header(info, extent);
+        const auto payload = payload_.view();
+        file.insert(file.end(), payload.begin(), payload.end());
+        return file;
+    }
+
+    const StreamPlan& plan_;
+    const std::function<void(double)>& progress_;
+    BatchState state_;
+    std::vector<std::uint32_t> place_;   ///< By vertex of the plan its index in the stream.
+    std::vector<std::uint32_t> source_;  ///< By vertex of the stream its index in the plan.
+    std::vector<std::array<std::int32_t, 3>> full_;  ///< Positions by vertex of the stream.
+    std::vector<ChunkInfo> chunks_;
+    ByteWriter payload_;
+    std::size_t chunk_splits_ = kFirstChunkSplits;
+};
+
+}  // namespace
+
+Result<std::vector<std::byte>> encode_stream(
+    const StreamPlan& plan, const std::function<void(double)>& progress
+)
+{
+    return StreamBuilder(plan, progress).run();
+}
+
+}  // namespace vsplit::codec
