@@ -1,0 +1,47 @@
+#pragma once
+
+#include "core/result.h"
+#include "mesh/indexed_mesh.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace vsplit::precompute {
+
+/// Collects the vertices and polygons that a mesh reader finds, and refuses what is not a mesh. Not
+/// thread safe. Safe on untrusted input.
+class MeshBuilder
+{
+public:
+    /// Makes room. Precondition: the caller has checked both numbers against the size of its input.
+    void reserve(std::size_t vertices, std::size_t triangles);
+
+    /// Appends a vertex. `point`: model units. Errors: BadCoordinate when it is not finite,
+    /// InputTooLarge.
+    [[nodiscard]] Result<void> add_vertex(const std::array<double, 3>& point);
+
+    /// Appends a polygon as a fan of triangles. `corners`: vertex indices from 0; a vertex may come
+    /// later. One or two corners make a degenerate triangle, so that the repair report counts them;
+    /// none make nothing. Errors: BadIndex when an index can never be one, InputTooLarge.
+    [[nodiscard]] Result<void> add_polygon(std::span<const std::int64_t> corners);
+
+    /// Appends the triangles of a strip whose direction alternates; -1 starts a new strip. Triangles
+    /// that repeat a vertex only join strips and are left out. Errors: as add_polygon().
+    [[nodiscard]] Result<void> add_strip(std::span<const std::int64_t> corners);
+
+    /// Vertices so far.
+    [[nodiscard]] std::size_t vertex_count() const { return mesh_.positions.size(); }
+
+    /// Takes the mesh. Errors: BadIndex when a triangle refers to a vertex that never came, NotAMesh
+    /// when there is no vertex, EmptyMesh when there is no triangle. Leaves the builder empty.
+    [[nodiscard]] Result<IndexedMesh> finish();
+
+private:
+    [[nodiscard]] Result<void> add_triangle(std::int64_t a, std::int64_t b, std::int64_t c);
+
+    IndexedMesh mesh_;
+};
+
+}  // namespace vsplit::precompute

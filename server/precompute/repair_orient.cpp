@@ -1,0 +1,125 @@
+#include "precompute/repair_steps.h"
+
+#include <utility>
+
+namespace vsplit::precompute {
+namespace {
+
+/// State of a face during the flood fill.
+enum Visit : std::uint8_t
+{
+    kUnvisited = 2,
+    kKept = 0,
+    kReversed = 1,
+};
+
+/// Joins the two half-edges of every edge that has exactly two.
+std::vector<HalfEdge> join_edges(const IndexedMesh& mesh, RepairReport& report)
+{
+    std::vector<HalfEdge> opposite(3 * mesh.triangles.size(), kNoHalfEdge);
+    const EdgeTable edges(mesh.triangles, mesh.positions.size());
+    edges.for_each_edge([&](std::span<const HalfEdge> halves) {
+        if (halves.size() == 2)
+        {
+            opposite[halves[0]] = halves[1];
+            opposite[halves[1]] = halves[0];
+        }
+        report.non_manifold_edges += halves.size() > 2 ? 1 : 0;
+    });
+    return opposite;
+}
+
+class FloodFill
+{
+public:
+    FloodFill(const IndexedMesh& mesh, RepairReport& report)
+        : triangles_(mesh.triangles), report_(report)
+    {
+        result_.opposite = join_edges(mesh, report);
+        result_.reversed.assign(triangles_.size(), kUnvisited);
+        order_.reserve(triangles_.size());
+    }
+
+    Orientation run()
+    {
+        for (std::uint32_t face = 0; face < triangles_.size(); ++face)
+        {
+            if (result_.reversed[face] == kUnvisited)
+            {
+                fill_component(face);
+            }
+        }
+        return std::move(result_);
+    }
+
+private:
+    void fill_component(std::uint32_t seed)
+    {
+        const std::size_t begin = order_.size();
+        std::size_t reversed = 0;
+        result_.reversed[seed] = kKept;
+        order_.push_back(seed);
+        for (std::size_t i = begin; i < order_.size(); ++i)
+        {
+            reversed += result_.reversed[order_[i]] == kReversed ? 1 : 0;
+            visit_neighbours(order_[i]);
+        }
+        const std::size_t size = order_.size() - begin;
+        if (2 * reversed > size)
+        {
+            for (std::size_t i = begin; i < order_.size(); ++i)
+            {
+                result_.reversed[order_[i]] ^= 1U;
+            }
+            reversed = size - reversed;
+        }
+        report_.flipped_faces += static_cast<std::uint32_t>(reversed);
+    }
+
+    void visit_neighbours(std::uint32_t face)
+    {
+        for (HalfEdge half = 3 * face; half < 3 * face + 3; ++half)
+        {
+            const HalfEdge other = result_.opposite[half];
+            if (other == kNoHalfEdge)
+            {
+                continue;
+            }
+            const bool agree = start_of(half) != start_of(other);
+            const auto wanted =
+                static_cast<std::uint8_t>(result_.reversed[face] ^ (agree ? 0U : 1U));
+            std::uint8_t& state = result_.reversed[other / 3];
+            if (state == kUnvisited)
+            {
+                state = wanted;
+                order_.push_back(other / 3);
+            }
+            else if (state != wanted)
+            {
+                // Not orientable: the surface is one-sided along this edge.
+                result_.opposite[half] = kNoHalfEdge;
+                result_.opposite[other] = kNoHalfEdge;
+                ++report_.non_manifold_edges;
+            }
+        }
+    }
+
+    [[nodiscard]] std::uint32_t start_of(HalfEdge half) const
+    {
+        return triangles_[half / 3][half % 3];
+    }
+
+    std::span<const Triangle> triangles_;
+    RepairReport& report_;
+    Orientation result_;
+    std::vector<std::uint32_t> order_;  ///< Faces as they were reached.
+};
+
+}  // namespace
+
+Orientation orient_faces(const IndexedMesh& mesh, RepairReport& report)
+{
+    return FloodFill(mesh, report).run();
+}
+
+}  // namespace vsplit::precompute

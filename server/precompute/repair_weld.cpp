@@ -1,0 +1,155 @@
+#include "precompute/repair_steps.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace vsplit::precompute {
+namespace {
+
+/// A vertex as it is sorted: equal positions side by side, the smallest index first.
+struct PlacedVertex
+{
+    std::array<double, 3> point{};
+    std::uint32_t vertex = 0;
+
+    friend auto operator<=>(const PlacedVertex&, const PlacedVertex&) = default;
+};
+
+/// A triangle as it is sorted: equal vertex sets side by side, the smallest face first.
+struct SortedFace
+{
+    Triangle vertices{};
+    std::uint32_t face = 0;
+
+    friend auto operator<=>(const SortedFace&, const SortedFace&) = default;
+};
+
+std::vector<std::uint8_t> used_vertices(
+    std::span<const Triangle> triangles, std::size_t vertex_count
+)
+{
+    std::vector<std::uint8_t> used(vertex_count, 0);
+    for (const Triangle& triangle : triangles)
+    {
+        for (const std::uint32_t vertex : triangle)
+        {
+            used[vertex] = 1;
+        }
+    }
+    return used;
+}
+
+/// Returns for every vertex the smallest one at its position.
+std::vector<std::uint32_t> weld(
+    const IndexedMesh& mesh, const std::vector<std::uint8_t>& used, RepairReport& report
+)
+{
+    std::vector<PlacedVertex> placed;
+    placed.reserve(mesh.positions.size());
+    for (std::uint32_t vertex = 0; vertex < mesh.positions.size(); ++vertex)
+    {
+        if (used[vertex] != 0)
+        {
+            const auto& [x, y, z] = mesh.positions[vertex];
+            placed.push_back({{x + 0.0, y + 0.0, z + 0.0}, vertex});  // -0 becomes 0
+        }
+    }
+    std::sort(placed.begin(), placed.end());
+    std::vector<std::uint32_t> representative(mesh.positions.size());
+    std::iota(representative.begin(), representative.end(), std::uint32_t{0});
+    for (std::size_t i = 1; i < placed.size(); ++i)
+    {
+        if (placed[i].point == placed[i - 1].point)
+        {
+            representative[placed[i].vertex] = representative[placed[i - 1].vertex];
+            ++report.welded_vertices;
+        }
+    }
+    return representative;
+}
+
+/// Marks every triangle that has the vertices of an earlier one.
+std::vector<std::uint8_t> find_duplicates(std::span<const Triangle> triangles)
+{
+    std::vector<SortedFace> sorted;
+    sorted.reserve(triangles.size());
+    for (std::uint32_t face = 0; face < triangles.size(); ++face)
+    {
+        SortedFace row{triangles[face], face};
+        std::sort(row.vertices.begin(), row.vertices.end());
+        sorted.push_back(row);
+    }
+    std::sort(sorted.begin(), sorted.end());
+    std::vector<std::uint8_t> duplicate(triangles.size(), 0);
+    for (std::size_t i = 1; i < sorted.size(); ++i)
+    {
+        duplicate[sorted[i].face] = sorted[i].vertices == sorted[i - 1].vertices ? 1 : 0;
+    }
+    return duplicate;
+}
+
+std::vector<Triangle> clean_triangles(
+    std::span<const Triangle> triangles,
+    const std::vector<std::uint32_t>& representative,
+    RepairReport& report
+)
+{
+    std::vector<Triangle> proper;
+    proper.reserve(triangles.size());
+    for (const auto& [first, second, third] : triangles)
+    {
+        const Triangle welded{representative[first], representative[second], representative[third]};
+        const auto& [a, b, c] = welded;
+        if (a == b || b == c || c == a)
+        {
+            ++report.degenerate_faces;
+            continue;
+        }
+        proper.push_back(welded);
+    }
+    const auto duplicate = find_duplicates(proper);
+    std::size_t kept = 0;
+    for (std::size_t face = 0; face < proper.size(); ++face)
+    {
+        if (duplicate[face] == 0)
+        {
+            proper[kept++] = proper[face];
+        }
+    }
+    report.duplicate_faces = static_cast<std::uint32_t>(proper.size() - kept);
+    proper.resize(kept);
+    return proper;
+}
+
+}  // namespace
+
+IndexedMesh weld_and_clean(const IndexedMesh& mesh, RepairReport& report)
+{
+    const std::size_t count = mesh.positions.size();
+    const auto representative = weld(mesh, used_vertices(mesh.triangles, count), report);
+    IndexedMesh result;
+    result.triangles = clean_triangles(mesh.triangles, representative, report);
+
+    const auto used = used_vertices(result.triangles, count);
+    std::vector<std::uint32_t> renumbered(count, 0);
+    for (std::size_t vertex = 0; vertex < count; ++vertex)
+    {
+        if (used[vertex] != 0)
+        {
+            renumbered[vertex] = static_cast<std::uint32_t>(result.positions.size());
+            result.positions.push_back(mesh.positions[vertex]);
+        }
+    }
+    report.isolated_vertices =
+        static_cast<std::uint32_t>(count - result.positions.size()) - report.welded_vertices;
+    for (Triangle& triangle : result.triangles)
+    {
+        for (std::uint32_t& vertex : triangle)
+        {
+            vertex = renumbered[vertex];
+        }
+    }
+    return result;
+}
+
+}  // namespace vsplit::precompute
