@@ -8,15 +8,16 @@
 #ifdef NDEBUG
 #define VSPLIT_ASSERT(condition) static_cast<void>(0)
 #else
-#define VSPLIT_ASSERT(condition)                                                          \
-    do                                                                                    \
-    {                                                                                     \
-        if (!(condition))                                                                 \
-        {                                                                                 \
-            std::fprintf(                                                                 \
+#define VSPLIT_ASSERT(condition)                                                           \
+    do                                                                                     \
+    {                                                                                      \
+        if (!(condition))                                                                  \
+        {                                                                                  \
+            std::fprintf(                                                                  \
                 stderr, "%s:%d: precondition failed: %s\n", __FILE__, __LINE__, #condition \
-            );                                                                            \
-            std::abort();                                                                 \
-        }                                                                                 \
-    } while (false)
+            );                                                                             \
+            std::abort();                                                                  \
+        }                                                                                  \
+    }                                                                                      \
+    while (false)
 #endif

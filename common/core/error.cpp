@@ -1,69 +1,54 @@
 #include "core/error.h"
 
+#include <array>
+#include <utility>
+
 namespace vsplit {
+
+namespace {
+
+constexpr std::array<std::pair<ErrorCode, std::string_view>, 29> kNames{{
+    {ErrorCode::Ok, "ok"},
+    {ErrorCode::Truncated, "truncated"},
+    {ErrorCode::BadMagic, "bad-magic"},
+    {ErrorCode::UnsupportedVersion, "unsupported-version"},
+    {ErrorCode::UnknownRequiredChunk, "unknown-required-chunk"},
+    {ErrorCode::BadHeader, "bad-header"},
+    {ErrorCode::BadChecksum, "bad-checksum"},
+    {ErrorCode::BadChunk, "bad-chunk"},
+    {ErrorCode::LimitExceeded, "limit-exceeded"},
+    {ErrorCode::TrailingBytes, "trailing-bytes"},
+    {ErrorCode::NotAMesh, "not-a-mesh"},
+    {ErrorCode::UnsupportedInput, "unsupported-input"},
+    {ErrorCode::EmptyMesh, "empty-mesh"},
+    {ErrorCode::BadCoordinate, "bad-coordinate"},
+    {ErrorCode::BadIndex, "bad-index"},
+    {ErrorCode::InputTooLarge, "input-too-large"},
+    {ErrorCode::NotFound, "not-found"},
+    {ErrorCode::IoError, "io-error"},
+    {ErrorCode::AlreadyExists, "already-exists"},
+    {ErrorCode::BadRequest, "bad-request"},
+    {ErrorCode::BadFrame, "bad-frame"},
+    {ErrorCode::Timeout, "timeout"},
+    {ErrorCode::Overloaded, "overloaded"},
+    {ErrorCode::Cancelled, "cancelled"},
+    {ErrorCode::ConnectionLost, "connection-lost"},
+    {ErrorCode::EncodeFailed, "encode-failed"},
+    {ErrorCode::ContentChanged, "content-changed"},
+    {ErrorCode::Mismatch, "mismatch"},
+    {ErrorCode::Internal, "internal"},
+}};
+
+}  // namespace
 
 std::string_view error_name(ErrorCode code)
 {
-    switch (code)
+    for (const auto& [known, name] : kNames)
     {
-        case ErrorCode::Ok:
-            return "ok";
-        case ErrorCode::Truncated:
-            return "truncated";
-        case ErrorCode::BadMagic:
-            return "bad-magic";
-        case ErrorCode::UnsupportedVersion:
-            return "unsupported-version";
-        case ErrorCode::UnknownRequiredChunk:
-            return "unknown-required-chunk";
-        case ErrorCode::BadHeader:
-            return "bad-header";
-        case ErrorCode::BadChecksum:
-            return "bad-checksum";
-        case ErrorCode::BadChunk:
-            return "bad-chunk";
-        case ErrorCode::LimitExceeded:
-            return "limit-exceeded";
-        case ErrorCode::TrailingBytes:
-            return "trailing-bytes";
-        case ErrorCode::NotAMesh:
-            return "not-a-mesh";
-        case ErrorCode::UnsupportedInput:
-            return "unsupported-input";
-        case ErrorCode::EmptyMesh:
-            return "empty-mesh";
-        case ErrorCode::BadCoordinate:
-            return "bad-coordinate";
-        case ErrorCode::BadIndex:
-            return "bad-index";
-        case ErrorCode::InputTooLarge:
-            return "input-too-large";
-        case ErrorCode::NotFound:
-            return "not-found";
-        case ErrorCode::IoError:
-            return "io-error";
-        case ErrorCode::AlreadyExists:
-            return "already-exists";
-        case ErrorCode::BadRequest:
-            return "bad-request";
-        case ErrorCode::BadFrame:
-            return "bad-frame";
-        case ErrorCode::Timeout:
-            return "timeout";
-        case ErrorCode::Overloaded:
-            return "overloaded";
-        case ErrorCode::Cancelled:
-            return "cancelled";
-        case ErrorCode::ConnectionLost:
-            return "connection-lost";
-        case ErrorCode::EncodeFailed:
-            return "encode-failed";
-        case ErrorCode::ContentChanged:
-            return "content-changed";
-        case ErrorCode::Mismatch:
-            return "mismatch";
-        case ErrorCode::Internal:
-            return "internal";
+        if (known == code)
+        {
+            return name;
+        }
     }
     return "unknown";
 }

@@ -10,10 +10,10 @@ namespace vsplit {
 /// (proto/WIRE_PROTOCOL.md) and appear in logs; never renumber, only append.
 enum class ErrorCode : std::uint16_t
 {
-    Ok = 0,                  ///< No error; never carried by an Error.
-    Truncated = 1,           ///< The data end before the structure they announce.
-    BadMagic = 2,            ///< Not a vsplit stream.
-    UnsupportedVersion = 3,  ///< A newer major version than this reader understands.
+    Ok = 0,                    ///< No error; never carried by an Error.
+    Truncated = 1,             ///< The data end before the structure they announce.
+    BadMagic = 2,              ///< Not a vsplit stream.
+    UnsupportedVersion = 3,    ///< A newer major version than this reader understands.
     UnknownRequiredChunk = 4,  ///< A chunk that may not be skipped has an unknown kind or codec.
     BadHeader = 5,             ///< A header or index field is out of its range.
     BadChecksum = 6,           ///< Header or chunk bytes differ from their checksum.

@@ -6,7 +6,6 @@
 #include <memory>
 #include <string>
 #include <system_error>
-
 #include <unistd.h>
 
 namespace vsplit {
@@ -19,7 +18,10 @@ struct FileCloser
 
 using File = std::unique_ptr<std::FILE, FileCloser>;
 
-std::string reason() { return std::strerror(errno); }
+std::string reason()
+{
+    return std::strerror(errno);
+}
 
 bool write_and_flush(std::FILE* file, std::span<const std::byte> bytes)
 {
@@ -44,7 +46,9 @@ Result<std::vector<std::byte>> read_file(const std::filesystem::path& path, std:
     const auto size = std::filesystem::file_size(path, status_error);
     if (status_error)
     {
-        return fail(ErrorCode::IoError, "cannot read " + path.string() + ": " + status_error.message());
+        return fail(
+            ErrorCode::IoError, "cannot read " + path.string() + ": " + status_error.message()
+        );
     }
     if (size > max_bytes)
     {

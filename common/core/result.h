@@ -26,11 +26,12 @@ using Result = tl::expected<T, Error>;
 }  // namespace vsplit
 
 /// Returns the error of a Result-valued expression from the enclosing function, if it has one.
-#define VSPLIT_TRY(expression)                                                    \
-    do                                                                            \
-    {                                                                             \
-        if (auto vsplit_try_result = (expression); !vsplit_try_result)            \
-        {                                                                         \
-            return tl::unexpected<::vsplit::Error>(vsplit_try_result.error());    \
-        }                                                                         \
-    } while (false)
+#define VSPLIT_TRY(expression)                                                 \
+    do                                                                         \
+    {                                                                          \
+        if (auto vsplit_try_result = (expression); !vsplit_try_result)         \
+        {                                                                      \
+            return tl::unexpected<::vsplit::Error>(vsplit_try_result.error()); \
+        }                                                                      \
+    }                                                                          \
+    while (false)

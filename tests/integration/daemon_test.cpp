@@ -1,0 +1,102 @@
+// The daemon's life: shutting down, encoding source meshes once.
+#include "core/file_io.h"
+#include "integration/model_folder.h"
+#include "integration/raw_client.h"
+#include "integration/server_process.h"
+
+#include <csignal>
+#include <thread>
+
+namespace vsplit::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Daemon = ModelFolderTest;
+using std::chrono::seconds;
+
+TEST_F(Daemon, ExitsWithZeroOnSigtermWhenIdle)
+{
+    ServerProcess server(root_, logs_);
+    server.process().signal(SIGTERM);
+    EXPECT_EQ(server.process().wait(seconds(10)), 0);
+}
+
+TEST_F(Daemon, FinishesRunningTransfersOnSigterm)
+{
+    const auto model = encode("beast.ply", "beast");
+    ServerProcess server(root_, logs_);
+    RawClient client(server.port(), 4096);
+    ASSERT_TRUE(client.open({.model = "beast"}));
+    const auto info = client.next();
+    ASSERT_TRUE(info.has_value());
+    server.process().signal(SIGTERM);
+    const auto transfer = client.finish();
+    EXPECT_EQ(transfer.done, wire::DoneReason::EndReached);
+    EXPECT_EQ(transfer.payload, model.bytes);
+    EXPECT_EQ(server.process().wait(seconds(10)), 0);
+    EXPECT_FALSE(Socket::connect(server.port()).open());
+}
+
+TEST_F(Daemon, EncodesASourceMeshOnceForTwoClients)
+{
+    fs::copy_file(asset("beast.ply"), root_ / "beast.ply");
+    const fs::path cache = folder_ / "cache";
+    const auto expected = encode("beast.ply", "expected");
+    const ServerProcess server(root_, logs_, {"--cache", cache.string()});
+    std::vector<Transfer> transfers(2);
+    {
+        std::vector<std::jthread> threads;
+        for (auto& transfer : transfers)
+        {
+            threads.emplace_back([&transfer, port = server.port()] {
+                transfer = RawClient(port).transfer({.model = "beast.ply"});
+            });
+        }
+    }
+    EXPECT_EQ(transfers[0].payload, expected.bytes);
+    EXPECT_EQ(transfers[1].payload, expected.bytes);
+    std::vector<fs::path> made;
+    for (const auto& entry : fs::recursive_directory_iterator(cache))
+    {
+        if (entry.is_regular_file())
+        {
+            made.push_back(entry.path());
+        }
+    }
+    ASSERT_EQ(made.size(), 1U);
+
+    const auto written = fs::last_write_time(made.front());
+    EXPECT_EQ(RawClient(server.port()).transfer({.model = "beast.ply"}).payload, expected.bytes);
+    EXPECT_EQ(fs::last_write_time(made.front()), written);
+}
+
+TEST_F(Daemon, SaysWhyASourceMeshCannotBeEncoded)
+{
+    ASSERT_TRUE(
+        write_file_atomically(root_ / "broken.ply", std::vector<std::byte>(5000)).has_value()
+    );
+    const fs::path cache = folder_ / "cache";
+    const ServerProcess server(root_, logs_, {"--cache", cache.string()});
+    RawClient client(server.port());
+    const auto answer = client.transfer({.model = "broken.ply"});
+    ASSERT_TRUE(answer.failure.has_value());
+    EXPECT_EQ(answer.failure->code, static_cast<std::uint16_t>(ErrorCode::EncodeFailed));
+    EXPECT_FALSE(answer.failure->message.empty());
+}
+
+TEST_F(Daemon, SaysSoWhenItsPortIsTaken)
+{
+    const ServerProcess first(root_, logs_);
+    const auto second =
+        run({program("vsplitd"),
+             "--root",
+             root_.string(),
+             "--listen",
+             "127.0.0.1:" + std::to_string(first.port())},
+            logs_);
+    EXPECT_GT(second.status, 0);
+    EXPECT_FALSE(second.errors.empty());
+}
+
+}  // namespace
+}  // namespace vsplit::test
