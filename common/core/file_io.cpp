@@ -23,10 +23,20 @@ std::string reason()
     return std::strerror(errno);
 }
 
+// An empty span may have a null pointer, which fread and fwrite must not get.
+bool read_all(std::FILE* file, std::span<std::byte> bytes)
+{
+    return bytes.empty() || std::fread(bytes.data(), 1, bytes.size(), file) == bytes.size();
+}
+
+bool write_all(std::FILE* file, std::span<const std::byte> bytes)
+{
+    return bytes.empty() || std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+}
+
 bool write_and_flush(std::FILE* file, std::span<const std::byte> bytes)
 {
-    return std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size() &&
-           std::fflush(file) == 0 && ::fsync(::fileno(file)) == 0;
+    return write_all(file, bytes) && std::fflush(file) == 0 && ::fsync(::fileno(file)) == 0;
 }
 
 }  // namespace
@@ -56,7 +66,7 @@ Result<std::vector<std::byte>> read_file(const std::filesystem::path& path, std:
     }
     const File file(std::fopen(path.c_str(), "rb"));
     std::vector<std::byte> bytes(size);
-    if (!file || std::fread(bytes.data(), 1, bytes.size(), file.get()) != bytes.size())
+    if (!file || !read_all(file.get(), bytes))
     {
         return fail(ErrorCode::IoError, "cannot read " + path.string() + ": " + reason());
     }
