@@ -16,10 +16,10 @@ namespace vsplit::precompute {
 /// Choices of an encode; the defaults are what `vsplit encode` uses.
 struct EncodeOptions
 {
-    int position_bits = 12;           ///< 8 .. 20.
+    int position_bits = 12;  ///< 8 .. 20.
     Metric metric = Metric::Curvature;
     std::uint32_t base_vertices = 0;  ///< Aim for the base mesh; 0 lets the encoder choose.
-    unsigned threads = 1;             ///< Worker threads, at least 1; the bytes do not depend on it.
+    unsigned threads = 1;  ///< Worker threads, at least 1; the bytes do not depend on it.
 };
 
 /// Called now and then with the stage's name and its share done, 0 .. 1; from the encoding thread.

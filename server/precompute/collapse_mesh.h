@@ -1,0 +1,138 @@
+#pragma once
+
+#include "mesh/indexed_mesh.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace vsplit::precompute {
+
+/// A vector in double precision, grid units.
+using Vector3 = std::array<double, 3>;
+
+[[nodiscard]] inline Vector3 operator+(const Vector3& a, const Vector3& b)
+{
+    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+
+[[nodiscard]] inline Vector3 operator-(const Vector3& a, const Vector3& b)
+{
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+[[nodiscard]] inline Vector3 operator*(const Vector3& a, double s)
+{
+    return {a[0] * s, a[1] * s, a[2] * s};
+}
+
+/// Inner product.
+[[nodiscard]] inline double dot(const Vector3& a, const Vector3& b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// Vector product.
+[[nodiscard]] inline Vector3 cross(const Vector3& a, const Vector3& b)
+{
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// The neighbours of a vertex, counter-clockwise; on a boundary from one boundary neighbour to the
+/// other.
+struct OneRing
+{
+    static constexpr std::size_t kMost = 24;
+    std::array<std::uint32_t, kMost> vertex{};
+    /// Corner at the centre of the face (centre, vertex[i], vertex[i + 1]).
+    std::array<std::int32_t, kMost> corner{};
+    std::size_t size = 0;        ///< Neighbours.
+    std::size_t face_count = 0;  ///< Faces: size, or size - 1 on a boundary.
+    bool boundary = false;
+};
+
+/// A corner table (3 * face + k) in which half-edge collapses are carried out in place. Rings larger
+/// than OneRing::kMost are not walked. Not thread safe.
+class CollapseMesh
+{
+public:
+    /// Takes over a 2-manifold with boundary. `vertex_count`: vertices, all used by `triangles`.
+    CollapseMesh(std::uint32_t vertex_count, std::span<const Triangle> triangles);
+
+    /// Walks the ring of a vertex. Result: false when it has more neighbours than OneRing::kMost.
+    [[nodiscard]] bool ring(std::uint32_t vertex, OneRing& ring) const;
+
+    /// Folds the centre of `ring` into its neighbour number `kept`. Precondition: can_collapse().
+    void collapse(std::uint32_t removed, const OneRing& ring, std::size_t kept);
+
+    /// Tells whether folding the ring's centre into neighbour number `kept` keeps a manifold whose
+    /// vertices have at most `valence_limit` neighbours.
+    /// Source: Dey, Edelsbrunner, Guha, Nekhayev, "Topology Preserving Edge Contraction", 1999 (link
+    /// condition).
+    [[nodiscard]] bool can_collapse(
+        std::uint32_t removed, const OneRing& ring, std::size_t kept, int valence_limit
+    ) const;
+
+    [[nodiscard]] bool is_boundary(std::uint32_t vertex) const { return boundary_[vertex] != 0; }
+
+    [[nodiscard]] bool is_removed(std::uint32_t vertex) const { return corner_of_[vertex] < 0; }
+
+    /// Neighbours of a vertex; 250 stands for 250 or more.
+    [[nodiscard]] int valence(std::uint32_t vertex) const { return valence_[vertex]; }
+
+    /// Face across the edge opposite to a corner, or -1.
+    [[nodiscard]] std::int32_t face_across(std::int32_t corner) const
+    {
+        const std::int32_t across = opposite_[static_cast<std::size_t>(corner)];
+        return across < 0 ? -1 : across / 3;
+    }
+
+    /// Vertex across the edge opposite to a corner. Precondition: face_across(corner) >= 0.
+    [[nodiscard]] std::uint32_t vertex_across(std::int32_t corner) const
+    {
+        return static_cast<std::uint32_t>(
+            vertex_[static_cast<std::size_t>(opposite_[static_cast<std::size_t>(corner)])]
+        );
+    }
+
+    /// Number of faces at the start; face indices stay below it.
+    [[nodiscard]] std::size_t face_slots() const { return vertex_.size() / 3; }
+
+    /// Copies the triangles that are left.
+    [[nodiscard]] std::vector<Triangle> triangles() const;
+
+    /// Copies the vertices that are left, ascending.
+    [[nodiscard]] std::vector<std::uint32_t> vertices() const;
+
+private:
+    [[nodiscard]] static std::int32_t next(std::int32_t c) { return c % 3 == 2 ? c - 2 : c + 1; }
+
+    [[nodiscard]] static std::int32_t previous(std::int32_t c)
+    {
+        return c % 3 == 0 ? c + 2 : c - 1;
+    }
+
+    [[nodiscard]] std::int32_t opposite(std::int32_t c) const
+    {
+        return opposite_[static_cast<std::size_t>(c)];
+    }
+
+    [[nodiscard]] std::uint32_t vertex(std::int32_t c) const
+    {
+        return static_cast<std::uint32_t>(vertex_[static_cast<std::size_t>(c)]);
+    }
+
+    void link_opposites();
+    void link(std::int32_t a, std::int32_t b);
+    void drop_face(std::int32_t face);
+
+    std::vector<std::int32_t> vertex_;     ///< By corner; -1 in removed faces.
+    std::vector<std::int32_t> opposite_;   ///< By corner; -1 at the boundary.
+    std::vector<std::int32_t> corner_of_;  ///< By vertex one of its corners; -1 when removed.
+    std::vector<std::uint8_t> valence_;
+    std::vector<std::uint8_t> boundary_;
+};
+
+}  // namespace vsplit::precompute

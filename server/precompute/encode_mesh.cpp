@@ -1,0 +1,223 @@
+#include "precompute/encode_mesh.h"
+
+#include "codec/stream_encoder.h"
+#include "precompute/collapse_cost.h"
+#include "precompute/collapse_mesh.h"
+#include "precompute/level_builder.h"
+#include "precompute/level_errors.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace vsplit::precompute {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Seconds since `start`, which moves to now.
+double lap(Clock::time_point& start)
+{
+    const auto now = Clock::now();
+    const double seconds = std::chrono::duration<double>(now - start).count();
+    start = now;
+    return seconds;
+}
+
+/// Base mesh to aim for: about a kilobyte, enough to recognise a shape.
+constexpr std::uint32_t kDefaultBaseVertices = 64;
+
+/// Share of the vertices down to which levels are built for small files rather than for low error: the
+/// finest levels hold most of the vertices and hardly touch the picture at low rates.
+constexpr double kRegularShare = 0.35;
+
+/// Levels that make less progress than this end the sequence.
+constexpr double kLeastShare = 0.02;
+
+/// Small levels are made at least so large, because each costs about twenty bytes of its own.
+constexpr std::size_t kSmallestBatch = 16;
+
+bool is_curvature(Metric metric)
+{
+    return metric == Metric::Curvature || metric == Metric::CurvatureBspline;
+}
+
+LevelStyle style_for(Metric metric, std::size_t vertices, std::size_t all)
+{
+    if (is_curvature(metric) &&
+        static_cast<double>(vertices) > kRegularShare * static_cast<double>(all))
+    {
+        return {
+            .cost_weight = 1.0,
+            .shape = 20.0,
+            .centring = 10.0,
+            .apex = 2.0,
+            .packing = 2.0,
+            .cheapest_share = 0.85,
+            .largest_share = 1.0,
+        };
+    }
+    LevelStyle style{.cost_weight = 1.0, .largest_share = 0.18};
+    const double smallest = static_cast<double>(kSmallestBatch) / static_cast<double>(vertices);
+    style.largest_share = std::max(style.largest_share, smallest);
+    return style;
+}
+
+/// The collapse sequence: levels finest first, and the triangles before each and after all of them.
+struct Sequence
+{
+    std::vector<std::vector<codec::Collapse>> levels;
+    std::vector<std::vector<Triangle>> triangles;
+};
+
+Sequence make_sequence(
+    const IndexedMesh& mesh,
+    std::span<const Vector3> exact,
+    std::span<const std::uint32_t> stitches,
+    std::vector<float> weights,
+    const EncodeOptions& options,
+    const ProgressSink& progress
+)
+{
+    const auto vertex_count = static_cast<std::uint32_t>(exact.size());
+    // Copies of a cut vertex stay where they are, otherwise the cut would open.
+    std::vector<std::uint8_t> locked(stitches.empty() ? 0 : vertex_count, 0);
+    for (std::uint32_t v = 0; v < stitches.size(); ++v)
+    {
+        if (stitches[v] != v)
+        {
+            locked[v] = 1;
+            locked[stitches[v]] = 1;
+        }
+    }
+    CollapseMesh working(vertex_count, mesh.triangles);
+    CollapseCost cost(options.metric, exact, mesh.triangles, std::move(weights));
+    LevelBuilder builder(working, cost, exact, locked);
+    const std::size_t base =
+        options.base_vertices != 0 ? options.base_vertices : kDefaultBaseVertices;
+    Sequence sequence;
+    sequence.triangles.push_back(mesh.triangles);
+    while (builder.vertex_count() > base)
+    {
+        const std::size_t before = builder.vertex_count();
+        auto level =
+            builder.next_level(style_for(options.metric, before, vertex_count), before - base);
+        if (level.empty())
+        {
+            break;
+        }
+        const bool slow =
+            static_cast<double>(level.size()) < kLeastShare * static_cast<double>(before);
+        sequence.levels.push_back(std::move(level));
+        sequence.triangles.push_back(working.triangles());
+        if (progress)
+        {
+            progress("collapse", 1.0 - static_cast<double>(builder.vertex_count()) / vertex_count);
+        }
+        if (slow && builder.vertex_count() > base)
+        {
+            break;
+        }
+    }
+    return sequence;
+}
+
+codec::StreamPlan make_plan(
+    Sequence& sequence,
+    const QuantizationGrid& grid,
+    const GridMesh& mesh,
+    std::span<const LevelError> errors,
+    std::span<const std::uint32_t> stitches
+)
+{
+    codec::StreamPlan plan;
+    plan.grid = grid;
+    plan.mesh = &mesh;
+    plan.base_triangles = std::move(sequence.triangles.front());
+    plan.stitches = stitches;
+    for (std::size_t level = 0; level < errors.size(); ++level)
+    {
+        codec::PlannedLevel planned;
+        if (level > 0)
+        {
+            planned.collapses = std::move(sequence.levels[level - 1]);
+        }
+        planned.shift = errors[level].shift;
+        planned.rms_error = errors[level].distance.rms * grid.cell;
+        planned.max_error = errors[level].distance.max * grid.cell;
+        plan.levels.push_back(std::move(planned));
+    }
+    return plan;
+}
+
+}  // namespace
+
+Result<EncodedMesh> encode_mesh(
+    const IndexedMesh& mesh,
+    std::span<const std::uint32_t> stitches,
+    const EncodeOptions& options,
+    const ProgressSink& progress
+)
+{
+    if (mesh.triangles.empty() || mesh.positions.size() < 3)
+    {
+        return fail(ErrorCode::EmptyMesh, "there is no triangle to encode");
+    }
+    if (mesh.positions.size() > proto::kMaxVertices || mesh.triangles.size() > proto::kMaxFaces)
+    {
+        return fail(
+            ErrorCode::InputTooLarge, "the mesh has more vertices or faces than a stream can hold"
+        );
+    }
+    const auto begin = Clock::now();
+    auto start = begin;
+    EncodedMesh result;
+    auto weights = vertex_weights(mesh, options.metric, options.threads);
+    result.seconds.metric = lap(start);
+
+    const QuantizationGrid grid = make_grid(mesh.positions, options.position_bits);
+    const GridMesh quantised = quantize(grid, mesh);
+    std::vector<Vector3> exact(mesh.positions.size());
+    std::ranges::transform(mesh.positions, exact.begin(), [&](const auto& point) {
+        return (point - grid.origin) * (1.0 / grid.cell);
+    });
+    Sequence sequence = make_sequence(mesh, exact, stitches, std::move(weights), options, progress);
+    result.seconds.collapse = lap(start);
+
+    std::ranges::reverse(sequence.levels);
+    std::ranges::reverse(sequence.triangles);
+    const auto errors = measure_levels(
+        exact,
+        quantised,
+        sequence.triangles,
+        grid.bits,
+        options.threads,
+        [&](double share) {
+            if (progress)
+            {
+                progress("measure", share);
+            }
+        }
+    );
+    result.seconds.distance = lap(start);
+
+    const auto plan = make_plan(sequence, grid, quantised, errors, stitches);
+    auto file = codec::encode_stream(plan, [&](double share) {
+        if (progress)
+        {
+            progress("code", share);
+        }
+    });
+    VSPLIT_TRY(file);
+    result.file = std::move(*file);
+    auto info = codec::parse_stream_info(result.file);
+    VSPLIT_TRY(info);
+    result.info = std::move(*info);
+    result.seconds.code = lap(start);
+    result.seconds.total = std::chrono::duration<double>(Clock::now() - begin).count();
+    return result;
+}
+
+}  // namespace vsplit::precompute

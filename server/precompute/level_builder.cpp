@@ -1,0 +1,293 @@
+// Based on: Pajarola, Rossignac, "Compressed Progressive Meshes", 2000 (independent collapses in
+// batches); Wang, Yang, "3D Models Simplification Algorithm for Mobile Devices" (half-edge collapses
+// into a neighbour, coarse vertices a subset of the original).
+#include "precompute/level_builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+namespace vsplit::precompute {
+namespace {
+
+constexpr float kSettled = std::numeric_limits<float>::infinity();
+
+/// No face may turn by more than this (cosine).
+constexpr double kLeastCosine = 0.25;
+
+/// Quality below which a new triangle counts as a sliver; 1 is equilateral.
+constexpr double kLeastQuality = 0.02;
+
+/// Neighbours that a kept vertex may come to have.
+constexpr int kValenceLimit = 12;
+
+/// Least quality, 0 .. 1, over the triangles that a collapse changes; negative when one flips or
+/// degenerates.
+double worst_quality(const OneRing& ring, const StarGeometry& star, std::size_t kept)
+{
+    double worst = 1.0;
+    for (std::size_t i = 0; i < ring.face_count; ++i)
+    {
+        const std::size_t j = (i + 1) % ring.size;
+        if (i == kept || j == kept)
+        {
+            continue;
+        }
+        const Vector3 a = star.offset[i] - star.offset[kept];
+        const Vector3 b = star.offset[j] - star.offset[kept];
+        const Vector3 normal = cross(a, b);
+        const double double_area = std::sqrt(dot(normal, normal));
+        const double turned = dot(star.area_normal[i], normal);
+        if (!(double_area > 0.0) || turned < kLeastCosine * star.double_area[i] * double_area)
+        {
+            return -1.0;
+        }
+        const Vector3 edge = star.offset[j] - star.offset[i];
+        // 2 sqrt(3) * double area / sum of squared edges: 1 for equilateral triangles.
+        const double quality =
+            3.4641016151377544 * double_area / (dot(a, a) + dot(b, b) + dot(edge, edge));
+        worst = std::min(worst, quality);
+    }
+    return worst;
+}
+
+}  // namespace
+
+LevelBuilder::LevelBuilder(
+    CollapseMesh& mesh,
+    CollapseCost& cost,
+    std::span<const Vector3> positions,
+    std::span<const std::uint8_t> locked
+)
+    : mesh_(mesh),
+      cost_(cost),
+      positions_(positions),
+      locked_(locked),
+      alive_(mesh.vertices()),
+      first_(positions.size(), 0),
+      best_key_(positions.size(), kSettled),
+      face_level_(mesh.face_slots(), 0)
+{
+}
+
+void LevelBuilder::collect_vertex(std::uint32_t vertex, const LevelStyle& style)
+{
+    constexpr int kMostNeighbours = codec::kMaxWedge + 2;
+    OneRing ring;
+    if (mesh_.valence(vertex) > kMostNeighbours || mesh_.valence(vertex) < 3 ||
+        (!locked_.empty() && locked_[vertex] != 0) || !mesh_.ring(vertex, ring))
+    {
+        return;
+    }
+    const StarGeometry star = cost_.star(vertex, ring);
+    const double off_centre = std::sqrt(dot(star.mean, star.mean) / (star.area + 1.0));
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < ring.size; ++i)
+    {
+        const Vector3 off = star.offset[i] - star.mean;
+        nearest = std::min(nearest, dot(off, off));
+    }
+    for (std::size_t kept = 0; kept < ring.size; ++kept)
+    {
+        // A boundary vertex moves only along the boundary.
+        if (ring.boundary && kept != 0 && kept + 1 != ring.size)
+        {
+            continue;
+        }
+        const double quality = worst_quality(ring, star, kept);
+        if (quality < kLeastQuality)
+        {
+            continue;
+        }
+        const Vector3 off = star.offset[kept] - star.mean;
+        const double key = style.shape * (1.0 - quality) + style.centring * off_centre +
+                           style.apex * std::log((dot(off, off) + 1.0) / (nearest + 1.0));
+        candidates_.push_back({
+            vertex,
+            static_cast<std::uint32_t>(kept),
+            static_cast<float>(cost_.price(vertex, ring, star, kept)),
+            static_cast<float>(key),
+        });
+    }
+}
+
+void LevelBuilder::collect(const LevelStyle& style)
+{
+    candidates_.clear();
+    for (const std::uint32_t vertex : alive_)
+    {
+        first_[vertex] = static_cast<std::uint32_t>(candidates_.size());
+        best_key_[vertex] = kSettled;
+        collect_vertex(vertex, style);
+    }
+}
+
+void LevelBuilder::rank(const LevelStyle& style)
+{
+    std::vector<float> best_prices;
+    for (std::size_t i = 0; i < candidates_.size();)
+    {
+        const std::uint32_t vertex = candidates_[i].removed;
+        float best = kSettled;
+        for (; i < candidates_.size() && candidates_[i].removed == vertex; ++i)
+        {
+            best = std::min(best, candidates_[i].price);
+        }
+        best_prices.push_back(best);
+    }
+    if (best_prices.empty())
+    {
+        return;
+    }
+    const auto quantile = [&](double share) {
+        const auto index = std::min(
+            best_prices.size() - 1,
+            static_cast<std::size_t>(share * static_cast<double>(best_prices.size()))
+        );
+        std::ranges::nth_element(
+            best_prices, best_prices.begin() + static_cast<std::ptrdiff_t>(index)
+        );
+        return best_prices[index];
+    };
+    const double median = std::max(1e-30, static_cast<double>(quantile(0.5)));
+    const float most = style.cheapest_share < 1.0 ? quantile(style.cheapest_share) : kSettled;
+    heap_.clear();
+    for (Candidate& candidate : candidates_)
+    {
+        candidate.key =
+            candidate.price > most
+                ? kSettled
+                : candidate.key + static_cast<float>(
+                                      style.cost_weight *
+                                      std::log(1.0 + static_cast<double>(candidate.price) / median)
+                                  );
+        best_key_[candidate.removed] = std::min(best_key_[candidate.removed], candidate.key);
+    }
+    for (const std::uint32_t vertex : alive_)
+    {
+        if (best_key_[vertex] < kSettled)
+        {
+            heap_.emplace_back(best_key_[vertex], vertex);
+        }
+    }
+    std::ranges::make_heap(heap_, std::greater<>());
+}
+
+void LevelBuilder::reward_neighbours(const OneRing& ring, const LevelStyle& style)
+{
+    if (!(style.packing > 0.0))
+    {
+        return;
+    }
+    for (std::size_t i = 0; i < ring.face_count; ++i)
+    {
+        const std::int32_t face = mesh_.face_across(ring.corner[i]);
+        if (face < 0 || face_level_[static_cast<std::size_t>(face)] == level_)
+        {
+            continue;
+        }
+        const std::uint32_t vertex = mesh_.vertex_across(ring.corner[i]);
+        if (best_key_[vertex] < kSettled)
+        {
+            best_key_[vertex] -= static_cast<float>(style.packing);
+            heap_.emplace_back(best_key_[vertex], vertex);
+            std::ranges::push_heap(heap_, std::greater<>());
+        }
+    }
+}
+
+bool LevelBuilder::try_vertex(
+    std::uint32_t vertex, const LevelStyle& style, std::vector<codec::Collapse>& done
+)
+{
+    OneRing ring;
+    if (!mesh_.ring(vertex, ring))
+    {
+        return false;
+    }
+    for (std::size_t i = 0; i < ring.face_count; ++i)
+    {
+        if (face_level_[static_cast<std::size_t>(ring.corner[i] / 3)] == level_)
+        {
+            return false;
+        }
+    }
+    std::array<const Candidate*, OneRing::kMost> choices{};
+    std::size_t count = 0;
+    for (std::size_t i = first_[vertex]; i < candidates_.size() && candidates_[i].removed == vertex;
+         ++i)
+    {
+        if (candidates_[i].key < kSettled)
+        {
+            choices[count++] = &candidates_[i];
+        }
+    }
+    // Ties go to the first neighbour, so that the result never depends on the sorting.
+    std::sort(
+        choices.begin(),
+        choices.begin() + static_cast<std::ptrdiff_t>(count),
+        [](auto* a, auto* b) { return a->key != b->key ? a->key < b->key : a->kept < b->kept; }
+    );
+    for (std::size_t i = 0; i < count; ++i)
+    {
+        const std::size_t kept = choices[i]->kept;
+        if (!mesh_.can_collapse(vertex, ring, kept, kValenceLimit))
+        {
+            continue;
+        }
+        for (std::size_t f = 0; f < ring.face_count; ++f)
+        {
+            face_level_[static_cast<std::size_t>(ring.corner[f] / 3)] = level_;
+        }
+        reward_neighbours(ring, style);
+        done.push_back(describe_collapse(vertex, ring, kept));
+        mesh_.collapse(vertex, ring, kept);
+        cost_.merge(vertex, ring.vertex[kept]);
+        return true;
+    }
+    return false;
+}
+
+codec::Collapse describe_collapse(std::uint32_t removed, const OneRing& ring, std::size_t kept)
+{
+    codec::Collapse collapse{.removed = removed, .kept = ring.vertex[kept]};
+    collapse.wedge = static_cast<std::uint8_t>(ring.size - 2);
+    collapse.right = ring.vertex[(kept + 1) % ring.size];
+    if (ring.boundary && kept == 0)
+    {
+        collapse.kind = codec::SplitKind::BoundaryLeft;
+    }
+    else if (ring.boundary)
+    {
+        collapse.kind = codec::SplitKind::BoundaryRight;
+        collapse.right = ring.vertex[0];
+    }
+    return collapse;
+}
+
+std::vector<codec::Collapse> LevelBuilder::next_level(const LevelStyle& style, std::size_t most)
+{
+    ++level_;
+    collect(style);
+    rank(style);
+    std::vector<codec::Collapse> done;
+    const auto share =
+        static_cast<std::size_t>(style.largest_share * static_cast<double>(alive_.size()));
+    const std::size_t limit = std::min(most, std::max<std::size_t>(share, 1));
+    while (!heap_.empty() && done.size() < limit)
+    {
+        std::ranges::pop_heap(heap_, std::greater<>());
+        const auto [key, vertex] = heap_.back();
+        heap_.pop_back();
+        if (key == best_key_[vertex])
+        {
+            best_key_[vertex] = kSettled;
+            try_vertex(vertex, style, done);
+        }
+    }
+    std::erase_if(alive_, [this](std::uint32_t v) { return mesh_.is_removed(v); });
+    return done;
+}
+
+}  // namespace vsplit::precompute

@@ -1,0 +1,86 @@
+#pragma once
+
+#include "codec/stream_encoder.h"
+#include "precompute/collapse_cost.h"
+#include "precompute/collapse_mesh.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace vsplit::precompute {
+
+/// How the collapses of one level are chosen.
+struct LevelStyle
+{
+    double cost_weight = 1.0;  ///< Of log(1 + price / median price) in the order.
+    double shape = 0.0;     ///< Of how bad the worst new triangle is: regular meshes code better.
+    double centring = 0.0;  ///< Of how far the removed vertex is from its ring's mean.
+    double apex = 0.0;      ///< Of how far the kept vertex is from the ring's mean.
+    double packing = 0.0;   ///< Bonus for stars beside stars already taken: larger batches.
+    double cheapest_share = 1.0;  ///< Only this share of the vertices, the cheapest, may go.
+    double largest_share = 0.18;  ///< At most this share of the vertices goes in the level.
+};
+
+/// Describes a collapse as the codec wants it. Precondition: CollapseMesh::can_collapse().
+[[nodiscard]] codec::Collapse describe_collapse(
+    std::uint32_t removed, const OneRing& ring, std::size_t kept
+);
+
+/// Makes one level after another, finest first, out of independent half-edge collapses.
+class LevelBuilder
+{
+public:
+    /// `positions`: V points in grid units; `locked`: V flags, vertices never removed, or empty.
+    /// `mesh` and `cost` must outlive the builder.
+    LevelBuilder(
+        CollapseMesh& mesh,
+        CollapseCost& cost,
+        std::span<const Vector3> positions,
+        std::span<const std::uint8_t> locked
+    );
+
+    /// Chooses and carries out the collapses of the next coarser level. `most`: at most so many.
+    /// Result: the collapses, cheapest first; empty when nothing can go.
+    /// Source: Pajarola, Rossignac, "Compressed Progressive Meshes", 2000, section 4 (independence);
+    /// here stars are disjoint but rings may share vertices.
+    [[nodiscard]] std::vector<codec::Collapse> next_level(
+        const LevelStyle& style, std::size_t most
+    );
+
+    /// Vertices left.
+    [[nodiscard]] std::size_t vertex_count() const { return alive_.size(); }
+
+private:
+    /// A collapse that is geometrically sound.
+    struct Candidate
+    {
+        std::uint32_t removed = 0;
+        std::uint32_t kept = 0;  ///< Number of the neighbour in the ring.
+        float price = 0.0F;
+        float key = 0.0F;
+    };
+
+    void collect(const LevelStyle& style);
+    void collect_vertex(std::uint32_t vertex, const LevelStyle& style);
+    void rank(const LevelStyle& style);
+    bool try_vertex(
+        std::uint32_t vertex, const LevelStyle& style, std::vector<codec::Collapse>& done
+    );
+    void reward_neighbours(const OneRing& ring, const LevelStyle& style);
+
+    CollapseMesh& mesh_;
+    CollapseCost& cost_;
+    std::span<const Vector3> positions_;
+    std::span<const std::uint8_t> locked_;
+    std::vector<std::uint32_t> alive_;
+    std::vector<Candidate> candidates_;      ///< Grouped by removed vertex.
+    std::vector<std::uint32_t> first_;       ///< By vertex its first candidate.
+    std::vector<float> best_key_;            ///< By vertex the least key; infinite when settled.
+    std::vector<std::uint32_t> face_level_;  ///< By face the level that took it.
+    std::vector<std::pair<float, std::uint32_t>> heap_;
+    std::uint32_t level_ = 0;
+};
+
+}  // namespace vsplit::precompute
