@@ -29,7 +29,7 @@ using Result = tl::expected<T, Error>;
 #define VSPLIT_TRY(expression)                                                 \
     do                                                                         \
     {                                                                          \
-        if (auto vsplit_try_result = (expression); !vsplit_try_result)         \
+        if (auto&& vsplit_try_result = (expression); !vsplit_try_result)       \
         {                                                                      \
             return tl::unexpected<::vsplit::Error>(vsplit_try_result.error()); \
         }                                                                      \
