@@ -1,0 +1,127 @@
+#include "net/source_encoder.h"
+
+#include "format.h"
+#include "net/mapped_file.h"
+#include "wire/message.h"
+
+#include <array>
+#include <cstdio>
+#include <span>
+#include <string_view>
+#include <system_error>
+
+namespace vsplit::net {
+namespace {
+
+/// An encoder that writes more than this has gone wrong.
+constexpr std::uint64_t kMaxTargetBytes = std::uint64_t{1} << 32;
+
+std::string hex(std::uint64_t value)
+{
+    std::array<char, 17> text{};
+    std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(value));
+    return text.data();
+}
+
+std::string stamp_text(const FileStamp& stamp)
+{
+    return std::to_string(stamp.bytes) + "/" + std::to_string(stamp.modified_ns);
+}
+
+/// Takes the server's folders out of a message that clients will read.
+std::string without_folder(std::string text, const std::filesystem::path& file)
+{
+    const std::string folder = file.parent_path().string() + "/";
+    for (auto at = text.find(folder); at != std::string::npos; at = text.find(folder, at))
+    {
+        text.erase(at, folder.size());
+    }
+    return text;
+}
+
+std::string complaint(const ChildOutcome& outcome)
+{
+    switch (outcome.kind)
+    {
+        case ChildOutcome::Kind::TimedOut:
+            return "encoding takes too long";
+        case ChildOutcome::Kind::Killed:
+            return "the encoder was killed, probably at its memory or time limit";
+        case ChildOutcome::Kind::Exited:
+        case ChildOutcome::Kind::Stopped:
+            break;
+    }
+    return outcome.last_words.empty()
+               ? "the encoder failed with status " + std::to_string(outcome.exit_status)
+               : outcome.last_words;
+}
+
+/// A killed encoder leaves its temporary file (see write_file_atomically()).
+void remove_leftovers(const std::filesystem::path& target, int process_id)
+{
+    std::error_code ignored;
+    std::filesystem::remove(target.string() + "." + std::to_string(process_id) + ".tmp", ignored);
+}
+
+}  // namespace
+
+Result<std::filesystem::path> SourceEncoder::target_of(const std::filesystem::path& source) const
+{
+    if (settings_.cache.empty())
+    {
+        return fail(
+            ErrorCode::UnsupportedInput,
+            "this server does not encode source meshes (it runs without --cache)"
+        );
+    }
+    const auto mesh = stamp_file(source);
+    VSPLIT_TRY(mesh);
+    if (mesh->bytes > settings_.max_source_bytes)
+    {
+        return fail(ErrorCode::InputTooLarge, "the source mesh is too large for this server");
+    }
+    const auto program = stamp_file(settings_.program);
+    if (!program)
+    {
+        return fail(ErrorCode::EncodeFailed, "the server has no encoder program");
+    }
+    const std::string identity = source.string() + '\0' + stamp_text(*program) + '\0' +
+                                 std::to_string(proto::kStreamMajor) + '.' +
+                                 std::to_string(proto::kStreamMinor);
+    const std::uint64_t hash = wire::content_id(std::as_bytes(std::span(identity)));
+    // Size and time stand in the name themselves, so that only the path is left to the hash.
+    return settings_.cache / (hex(hash) + "-" + hex(static_cast<std::uint64_t>(mesh->modified_ns)) +
+                              "-" + std::to_string(mesh->bytes) + ".vsplit");
+}
+
+Result<void> SourceEncoder::encode(
+    const std::filesystem::path& source, const std::filesystem::path& target
+) const
+{
+    const ChildLimits limits{
+        .memory_bytes = settings_.memory_bytes,
+        .file_bytes = kMaxTargetBytes,
+        .time = settings_.time_limit,
+    };
+    const auto outcome = run_child(
+        {settings_.program.string(), "encode", source.string(), "-o", target.string()},
+        limits,
+        stop_
+    );
+    if (!outcome)
+    {
+        return fail(ErrorCode::EncodeFailed, "the server cannot start its encoder");
+    }
+    if (outcome->kind == ChildOutcome::Kind::Exited && outcome->exit_status == 0)
+    {
+        return {};
+    }
+    remove_leftovers(target, outcome->process_id);
+    if (outcome->kind == ChildOutcome::Kind::Stopped)
+    {
+        return fail(ErrorCode::Cancelled, "the server shuts down");
+    }
+    return fail(ErrorCode::EncodeFailed, without_folder(complaint(*outcome), source));
+}
+
+}  // namespace vsplit::net
