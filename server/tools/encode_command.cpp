@@ -1,0 +1,258 @@
+#include "commands.h"
+#include "core/file_io.h"
+#include "precompute/encode_mesh.h"
+#include "precompute/mesh_io.h"
+#include "precompute/repair.h"
+#include "progress_bar.h"
+#include "report.h"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <sys/resource.h>
+#include <thread>
+#include <vector>
+
+namespace vsplit::tools {
+namespace {
+
+using precompute::EncodedMesh;
+using precompute::EncodeOptions;
+using precompute::RepairedMesh;
+
+struct EncodeArguments
+{
+    std::string input;
+    std::string output;
+    std::string metric;
+    std::string json;
+    EncodeOptions options;
+    bool quiet = false;
+};
+
+struct ToolSeconds
+{
+    double read = 0.0;
+    double repair = 0.0;
+    double encode = 0.0;
+    double write = 0.0;
+};
+
+/// An encode, as far as it got.
+struct EncodeOutcome
+{
+    std::size_t input_vertices = 0;
+    std::size_t input_faces = 0;
+    RepairedMesh repaired;
+    EncodedMesh encoded;
+    ToolSeconds seconds;
+};
+
+std::uint64_t peak_memory_bytes()
+{
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024U;
+}
+
+Json seconds_json(const EncodeOutcome& outcome)
+{
+    const ToolSeconds& tool = outcome.seconds;
+    const precompute::EncodeSeconds& stages = outcome.encoded.seconds;
+    return {
+        {"read", tool.read},
+        {"repair", tool.repair},
+        {"metric", stages.metric},
+        {"collapse", stages.collapse},
+        {"distance", stages.distance},
+        {"code", stages.code},
+        {"write", tool.write},
+        {"total", tool.read + tool.repair + tool.encode + tool.write},
+    };
+}
+
+Json outcome_json(const EncodeArguments& arguments, const EncodeOutcome& outcome)
+{
+    const codec::StreamInfo& info = outcome.encoded.info;
+    return {
+        {"input",
+         {{"vertices", outcome.input_vertices},
+          {"faces", outcome.input_faces},
+          {"components", outcome.repaired.components},
+          {"boundary_edges", outcome.repaired.boundary_edges}}},
+        {"repair", repair_json(outcome.repaired.report)},
+        {"vertices", info.vertex_count},
+        {"faces", info.face_count},
+        {"position_bits", info.grid.bits},
+        {"metric", arguments.metric},
+        {"bytes", info.file_bytes},
+        {"header_bytes", info.header_bytes},
+        {"bits_per_vertex", bits_per_vertex(info, info.file_bytes)},
+        {"base", base_json(info)},
+        {"levels", levels_json(info)},
+        {"seconds", seconds_json(outcome)},
+        {"peak_memory_bytes", peak_memory_bytes()},
+    };
+}
+
+void print_input(const EncodeArguments& arguments, const EncodeOutcome& outcome)
+{
+    std::printf(
+        "%s: %zu vertices, %zu faces\n",
+        arguments.input.c_str(),
+        outcome.input_vertices,
+        outcome.input_faces
+    );
+    std::printf("repair: %s\n", repair_in_words(outcome.repaired.report).c_str());
+    std::printf(
+        "encoding %zu vertices, %zu faces; components: %u, boundary edges: %u\n",
+        outcome.repaired.mesh.positions.size(),
+        outcome.repaired.mesh.triangles.size(),
+        outcome.repaired.components,
+        outcome.repaired.boundary_edges
+    );
+    std::fflush(stdout);
+}
+
+void print_outcome(const EncodeArguments& arguments, const EncodeOutcome& outcome)
+{
+    const codec::StreamInfo& info = outcome.encoded.info;
+    print_levels(stdout, info);
+    std::printf(
+        "%s: %llu bytes, %.2f bits a vertex at %d bits a coordinate\n",
+        arguments.output.c_str(),
+        static_cast<unsigned long long>(info.file_bytes),
+        bits_per_vertex(info, info.file_bytes),
+        info.grid.bits
+    );
+    const ToolSeconds& tool = outcome.seconds;
+    const precompute::EncodeSeconds& stages = outcome.encoded.seconds;
+    std::printf(
+        "seconds: read %.2f, repair %.2f, metric %.2f, collapse %.2f, distance %.2f, code %.2f, "
+        "write %.2f, total %.2f\n",
+        tool.read,
+        tool.repair,
+        stages.metric,
+        stages.collapse,
+        stages.distance,
+        stages.code,
+        tool.write,
+        tool.read + tool.repair + tool.encode + tool.write
+    );
+}
+
+/// Reads and repairs the input.
+Result<void> load(const EncodeArguments& arguments, EncodeOutcome& outcome)
+{
+    Stopwatch watch;
+    const auto mesh = precompute::read_mesh(arguments.input);
+    VSPLIT_TRY(mesh);
+    outcome.seconds.read = watch.lap();
+    outcome.input_vertices = mesh->positions.size();
+    outcome.input_faces = mesh->triangles.size();
+    auto repaired = precompute::repair_mesh(*mesh);
+    if (!repaired)
+    {
+        Error error = repaired.error();
+        error.message = "cannot encode " + arguments.input + ": " + error.message;
+        return tl::unexpected<Error>(error);
+    }
+    outcome.repaired = std::move(*repaired);
+    outcome.seconds.repair = watch.lap();
+    return {};
+}
+
+/// Encodes what load() left and writes the stream.
+Result<void> encode(const EncodeArguments& arguments, bool speak, EncodeOutcome& outcome)
+{
+    Stopwatch watch;
+    ProgressBar bar(speak);
+    auto encoded = precompute::encode_mesh(
+        outcome.repaired.mesh,
+        outcome.repaired.stitches,
+        arguments.options,
+        [&](std::string_view stage, double share) { bar.show(stage, share); }
+    );
+    if (!encoded)
+    {
+        Error error = encoded.error();
+        error.message = "cannot encode " + arguments.input + ": " + error.message;
+        return tl::unexpected<Error>(error);
+    }
+    outcome.encoded = std::move(*encoded);
+    outcome.seconds.encode = watch.lap();
+    VSPLIT_TRY(write_file_atomically(arguments.output, outcome.encoded.file));
+    outcome.seconds.write = watch.lap();
+    return {};
+}
+
+Result<void> run(EncodeArguments arguments)
+{
+    if (arguments.output.empty())
+    {
+        arguments.output =
+            std::filesystem::path(arguments.input).replace_extension(".vsplit").string();
+    }
+    VSPLIT_TRY(check_not_same_file(arguments.input, arguments.output));
+    arguments.options.metric = precompute::find_metric(arguments.metric).value();
+
+    const bool speak = !arguments.quiet && arguments.json != "-";
+    EncodeOutcome outcome;
+    VSPLIT_TRY(load(arguments, outcome));
+    if (speak)
+    {
+        print_input(arguments, outcome);
+    }
+    VSPLIT_TRY(encode(arguments, !arguments.quiet, outcome));
+    if (speak)
+    {
+        print_outcome(arguments, outcome);
+    }
+    return write_json(outcome_json(arguments, outcome), arguments.json);
+}
+
+std::vector<std::string> metric_names()
+{
+    std::vector<std::string> names;
+    for (const auto& [metric, name] : precompute::kMetricNames)
+    {
+        names.emplace_back(name);
+    }
+    return names;
+}
+
+}  // namespace
+
+void add_encode_command(CLI::App& app, Result<void>& result)
+{
+    const auto arguments = std::make_shared<EncodeArguments>();
+    EncodeOptions& options = arguments->options;
+    options.threads = std::max(1U, std::thread::hardware_concurrency());
+    arguments->metric = std::string(precompute::metric_name(options.metric));
+
+    CLI::App* const command = app.add_subcommand("encode", "Encodes a mesh into a stream");
+    command->add_option("IN", arguments->input, "The mesh: .obj, .ply, .off or .stl")->required();
+    command->add_option("-o,--output", arguments->output, "The stream [IN with .vsplit]");
+    command->add_option("--position-bits", options.position_bits, "Bits a coordinate")
+        ->check(CLI::Range(proto::kMinPositionBits, proto::kMaxPositionBits))
+        ->capture_default_str();
+    command->add_option("--metric", arguments->metric, "What a collapse costs")
+        ->check(CLI::IsMember(metric_names()))
+        ->capture_default_str();
+    command->add_option(
+        "--base-vertices", options.base_vertices, "Vertices to aim for in the base mesh [automatic]"
+    );
+    constexpr unsigned kMostThreads = 256;
+    command->add_option("--threads", options.threads, "Worker threads; do not change the result")
+        ->check(CLI::Range(1U, kMostThreads))
+        ->capture_default_str();
+    command->add_option("--json", arguments->json, "Write JSON to a file, or to stdout with -");
+    command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
+    command->callback([arguments, &result] { result = run(*arguments); });
+}
+
+}  // namespace vsplit::tools

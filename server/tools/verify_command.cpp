@@ -1,0 +1,245 @@
+#include "commands.h"
+#include "mesh/quantization_grid.h"
+#include "precompute/mesh_io.h"
+#include "precompute/repair.h"
+#include "precompute/validate.h"
+#include "report.h"
+#include "stream_file.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace vsplit::tools {
+namespace {
+
+struct VerifyArguments
+{
+    std::string file;
+    std::string against;
+};
+
+using GridPoint = std::array<std::int32_t, 3>;
+using GridTriangle = std::array<GridPoint, 3>;
+
+tl::unexpected<Error> mismatch(const std::string& what)
+{
+    return fail(ErrorCode::Mismatch, what);
+}
+
+std::string counts(std::size_t vertices, std::size_t faces)
+{
+    return std::to_string(vertices) + " vertices and " + std::to_string(faces) + " faces";
+}
+
+/// Follows a decoding and compares what comes out with the index.
+class IndexCheck
+{
+public:
+    explicit IndexCheck(const codec::StreamInfo& info) : info_(info) {}
+
+    Result<void> operator()(const codec::Step& step)
+    {
+        if (step.kind == codec::StepKind::Header)
+        {
+            return {};
+        }
+        const codec::ChunkInfo& chunk = info_.chunks[chunk_++];
+        if (step.vertices != chunk.vertices || step.faces != chunk.faces)
+        {
+            return mismatch(
+                "chunk " + std::to_string(chunk_ - 1) + " gives " +
+                counts(step.vertices, step.faces) + " where the index says " +
+                counts(chunk.vertices, chunk.faces)
+            );
+        }
+        if (!step.level_complete)
+        {
+            return {};
+        }
+        const codec::LevelInfo& level = info_.levels[level_];
+        if (step.level != level_ || step.vertices != level.vertices || step.faces != level.faces)
+        {
+            return mismatch("level " + std::to_string(level_) + " is not what the index says");
+        }
+        ++level_;
+        return {};
+    }
+
+    /// Checks that nothing of the index was left out.
+    [[nodiscard]] Result<void> finish() const
+    {
+        const bool all = chunk_ == info_.chunks.size() && level_ == info_.levels.size();
+        return all ? Result<void>{} : mismatch("the stream ends before its last level");
+    }
+
+private:
+    const codec::StreamInfo& info_;
+    std::size_t chunk_ = 0;
+    std::uint32_t level_ = 0;
+};
+
+/// Checks that the file is as long as its index says.
+Result<void> check_length(const StreamFile& stream)
+{
+    const std::uint64_t expected = stream.info().file_bytes;
+    if (stream.size() < expected)
+    {
+        return fail(
+            ErrorCode::Truncated,
+            stream.path().string() + " should have " + std::to_string(expected) + " bytes",
+            stream.size()
+        );
+    }
+    if (stream.size() > expected)
+    {
+        return fail(
+            ErrorCode::TrailingBytes,
+            stream.path().string() + ": bytes follow the end of the stream",
+            expected
+        );
+    }
+    return {};
+}
+
+/// All triangles as their positions, each in its smallest rotation, sorted: equal exactly when the
+/// same oriented triangles are there, whatever the order of vertices and faces.
+std::vector<GridTriangle> canonical_triangles(const GridMesh& mesh)
+{
+    std::vector<GridTriangle> triangles;
+    triangles.reserve(mesh.triangles.size());
+    for (const auto& [a, b, c] : mesh.triangles)
+    {
+        const GridPoint& p = mesh.positions[a];
+        const GridPoint& q = mesh.positions[b];
+        const GridPoint& r = mesh.positions[c];
+        triangles.push_back(std::min({GridTriangle{p, q, r}, {q, r, p}, {r, p, q}}));
+    }
+    std::sort(triangles.begin(), triangles.end());
+    return triangles;
+}
+
+std::vector<GridPoint> sorted_positions(const GridMesh& mesh)
+{
+    std::vector<GridPoint> positions = mesh.positions;
+    std::sort(positions.begin(), positions.end());
+    return positions;
+}
+
+/// Vertices that are left when cut copies count once.
+std::size_t source_vertex_count(std::span<const std::uint32_t> stitches, std::size_t vertex_count)
+{
+    if (stitches.empty())
+    {
+        return vertex_count;
+    }
+    std::size_t count = 0;
+    for (std::size_t vertex = 0; vertex < stitches.size(); ++vertex)
+    {
+        count += stitches[vertex] == vertex ? 1 : 0;
+    }
+    return count;
+}
+
+Result<void> compare(const codec::StreamDecoder& decoder, const precompute::RepairedMesh& source)
+{
+    const QuantizationGrid& grid = decoder.info()->grid;
+    const QuantizationGrid expected_grid = make_grid(source.mesh.positions, grid.bits);
+    if (expected_grid.origin != grid.origin || expected_grid.cell != grid.cell)
+    {
+        return mismatch("the stream's grid is not the source's");
+    }
+    const GridMesh decoded = codec::extract_grid_mesh(decoder);
+    const GridMesh expected = quantize(grid, source.mesh);
+    if (decoded.positions.size() != expected.positions.size() ||
+        decoded.triangles.size() != expected.triangles.size())
+    {
+        return mismatch(
+            "the stream has " + counts(decoded.positions.size(), decoded.triangles.size()) +
+            ", the repaired source has " +
+            counts(expected.positions.size(), expected.triangles.size())
+        );
+    }
+    if (sorted_positions(decoded) != sorted_positions(expected))
+    {
+        return mismatch("the positions are not those of the quantised source");
+    }
+    if (canonical_triangles(decoded) != canonical_triangles(expected))
+    {
+        return mismatch("the triangles are not those of the quantised source");
+    }
+    const std::size_t stitched = source_vertex_count(decoder.stitches(), decoder.vertices());
+    const std::size_t wanted = source_vertex_count(source.stitches, expected.positions.size());
+    if (stitched != wanted)
+    {
+        return mismatch(
+            "stitching gives " + std::to_string(stitched) + " vertices, the source has " +
+            std::to_string(wanted)
+        );
+    }
+    return {};
+}
+
+Result<void> check_against(const codec::StreamDecoder& decoder, const std::string& path)
+{
+    const auto mesh = precompute::read_mesh(path);
+    VSPLIT_TRY(mesh);
+    const auto source = precompute::repair_mesh(*mesh);
+    VSPLIT_TRY(source);
+    return compare(decoder, *source);
+}
+
+Result<void> run(const VerifyArguments& arguments)
+{
+    auto stream = StreamFile::open(arguments.file);
+    VSPLIT_TRY(stream);
+    VSPLIT_TRY(check_length(*stream));
+
+    const codec::StreamInfo& info = stream->info();
+    codec::StreamDecoder decoder;
+    IndexCheck check(info);
+    double seconds = 0.0;
+    VSPLIT_TRY(stream->decode(decoder, info.file_bytes, seconds, std::ref(check)));
+    VSPLIT_TRY(check.finish());
+    const auto manifold = precompute::check_manifold(codec::extract_mesh(decoder, false));
+    if (!manifold)
+    {
+        return mismatch("the last level: " + manifold.error().message);
+    }
+    if (!arguments.against.empty())
+    {
+        const auto equal = check_against(decoder, arguments.against);
+        VSPLIT_TRY(equal);
+    }
+    std::printf(
+        "verified: %s, %zu levels, %u vertices, %u faces%s%s\n",
+        arguments.file.c_str(),
+        info.levels.size(),
+        info.vertex_count,
+        info.face_count,
+        arguments.against.empty() ? "" : ", the last level equals the quantised ",
+        arguments.against.c_str()
+    );
+    return {};
+}
+
+}  // namespace
+
+void add_verify_command(CLI::App& app, Result<void>& result)
+{
+    const auto arguments = std::make_shared<VerifyArguments>();
+    CLI::App* const command = app.add_subcommand(
+        "verify", "Checks a stream: checksums, every level, and that it equals its source"
+    );
+    command->add_option("FILE", arguments->file, "The stream")->required();
+    command->add_option(
+        "--against", arguments->against, "The mesh that the last level must equal when quantised"
+    );
+    command->callback([arguments, &result] { result = run(*arguments); });
+}
+
+}  // namespace vsplit::tools
