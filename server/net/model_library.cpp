@@ -196,8 +196,16 @@ Result<StreamPtr> ModelLibrary::encode_and_open(
         spdlog::warn("encoding {} failed: {}", source.string(), describe(encoded.error()));
         return tl::unexpected<Error>(encoded.error());
     }
+    auto stream = store_.open(target);
+    if (!stream)
+    {
+        spdlog::error("the encoder made a bad {}: {}", target.string(), describe(stream.error()));
+        std::error_code ignored;
+        std::filesystem::remove(target, ignored);
+        return fail(ErrorCode::EncodeFailed, "the encoder made a damaged stream");
+    }
     spdlog::info("encoded {} into {}", source.string(), target.string());
-    return reported(store_.open(target), target);
+    return stream;
 }
 
 void ModelLibrary::remember(const std::filesystem::path& target, const Error& error)
