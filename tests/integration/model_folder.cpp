@@ -3,12 +3,39 @@
 #include "core/file_io.h"
 #include "integration/child_process.h"
 
+#include <fstream>
+#include <random>
 #include <stdexcept>
 #include <unistd.h>
 
 namespace vsplit::test {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+void write_terrain(const fs::path& path, int side)
+{
+    std::mt19937 random(9);
+    std::ofstream file(path);
+    file << "OFF\n" << side * side << " " << 2 * (side - 1) * (side - 1) << " 0\n";
+    for (int i = 0; i < side * side; ++i)
+    {
+        const double height = static_cast<double>(random() % 1000) / 500.0;
+        file << i % side << " " << i / side << " " << height << "\n";
+    }
+    for (int y = 0; y + 1 < side; ++y)
+    {
+        for (int x = 0; x + 1 < side; ++x)
+        {
+            const int corner = y * side + x;
+            file << "3 " << corner << " " << corner + 1 << " " << corner + side << "\n";
+            file << "3 " << corner + 1 << " " << corner + side + 1 << " " << corner + side << "\n";
+        }
+    }
+}
+
+}  // namespace
 
 void ModelFolderTest::SetUp()
 {
@@ -33,13 +60,28 @@ fs::path ModelFolderTest::asset(const std::string& file)
 
 EncodedModel ModelFolderTest::encode(const std::string& file, const std::string& name) const
 {
+    return encode_file(asset(file), name);
+}
+
+EncodedModel ModelFolderTest::encode_large(const std::string& name) const
+{
+    write_terrain(folder_ / "terrain.off", 150);
+    return encode_file(folder_ / "terrain.off", name, {"--position-bits", "20"});
+}
+
+EncodedModel ModelFolderTest::encode_file(
+    const fs::path& mesh, const std::string& name, const std::vector<std::string>& options
+) const
+{
     EncodedModel model;
     model.path = root_ / (name + ".vsplit");
-    const auto encoder =
-        run({program("vsplit"), "encode", asset(file).string(), "-o", model.path.string()}, logs_);
+    std::vector<std::string> arguments{
+        program("vsplit"), "encode", mesh.string(), "-o", model.path.string()};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const auto encoder = run(arguments, logs_);
     if (encoder.status != 0)
     {
-        throw std::runtime_error("vsplit encode " + file + ": " + encoder.errors);
+        throw std::runtime_error("vsplit encode " + mesh.string() + ": " + encoder.errors);
     }
     model.bytes = read_file(model.path).value();
     model.info = codec::parse_stream_info(model.bytes).value();

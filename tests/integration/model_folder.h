@@ -30,6 +30,17 @@ protected:
     /// fails.
     [[nodiscard]] EncodedModel encode(const std::string& asset, const std::string& name) const;
 
+    /// Encodes any mesh file, with further options of `vsplit encode`; otherwise as encode().
+    [[nodiscard]] EncodedModel encode_file(
+        const std::filesystem::path& mesh,
+        const std::string& name,
+        const std::vector<std::string>& options = {}
+    ) const;
+
+    /// Encodes a terrain of random heights at 20 bits: noise compresses badly, so the stream is some
+    /// 100 kB long, more than the kernels hold for a client that reads slowly.
+    [[nodiscard]] EncodedModel encode_large(const std::string& name) const;
+
     /// Returns a mesh file of assets/.
     [[nodiscard]] static std::filesystem::path asset(const std::string& file);
 

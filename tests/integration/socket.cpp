@@ -2,6 +2,7 @@
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -45,6 +46,9 @@ Socket Socket::connect(std::uint16_t port, int receive_buffer)
     Socket socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
     if (receive_buffer > 0)
     {
+        // The server's kernel sizes its send buffer by the segment size: 64 KiB on loopback.
+        const int segment = 536;
+        ::setsockopt(socket.descriptor_, IPPROTO_TCP, TCP_MAXSEG, &segment, sizeof(segment));
         ::setsockopt(
             socket.descriptor_, SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof(receive_buffer)
         );

@@ -24,7 +24,8 @@ public:
     ~Socket();
 
     /// Connects to a port of 127.0.0.1; an unopened socket when nobody listens. `receive_buffer`:
-    /// size of the kernel's receive buffer, bytes, 0 for the default.
+    /// size of the kernel's receive buffer, bytes; with it the kernels hold
+    /// little of what is not read; 0 for the default.
     [[nodiscard]] static Socket connect(std::uint16_t port, int receive_buffer = 0);
 
     /// Listens on a free port of 127.0.0.1.
