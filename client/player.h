@@ -1,0 +1,67 @@
+#pragma once
+
+#include "connection.h"
+#include "display.h"
+#include "options.h"
+#include "refiner.h"
+#include "report.h"
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <ostream>
+#include <vector>
+
+namespace vsplit::client {
+
+/// Runs one session of the simulated device: connect, refine, draw, report. Use on one thread.
+class Player
+{
+public:
+    /// `options`, `out` (where people read the table as it grows): must outlive the player.
+    Player(const Options& options, std::ostream& out);
+
+    /// Plays the stream to its end or to the stop condition, and saves what was asked for.
+    /// Errors: those of Connection, codec::StreamDecoder, plan_memory(), Display and of writing
+    /// files. What was shown before an error is in report() all the same.
+    [[nodiscard]] Result<void> run();
+
+    /// What was found out so far.
+    [[nodiscard]] const Report& report() const { return report_; }
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    [[nodiscard]] Result<void> play();
+    [[nodiscard]] Result<void> read_header();
+    [[nodiscard]] Result<void> plan();
+    [[nodiscard]] Result<void> refine();
+    [[nodiscard]] Result<void> pump_bytes();
+    [[nodiscard]] Result<void> account(const Progress& progress);
+    [[nodiscard]] Result<void> wait_or_draw();
+    [[nodiscard]] Result<void> accept_end_of_transfer();
+    [[nodiscard]] Result<void> finish();
+    void draw_frame();
+    void print_last_row();
+    [[nodiscard]] double elapsed() const;
+    [[nodiscard]] bool needs_frames() const;
+    [[nodiscard]] bool reached_end() const;
+
+    const Options& options_;
+    std::ostream& out_;
+    Report report_;
+    LevelRow next_row_;
+    std::unique_ptr<Display> display_;
+    Clock::time_point start_;
+    Clock::time_point next_frame_;
+    std::unique_ptr<Connection> connection_;
+    std::vector<std::byte> header_;
+    codec::StreamInfo info_;   ///< Of the whole stream.
+    std::uint32_t level_ = 0;  ///< The finest level that will be decoded.
+    std::uint64_t end_ = 0;    ///< Length of the prefix that will be decoded.
+    std::unique_ptr<Refiner> refiner_;
+    std::vector<std::byte> block_;
+};
+
+}  // namespace vsplit::client
