@@ -71,8 +71,9 @@ std::array<std::byte, proto::kFrameHeaderBytes> frame_header(
 std::vector<std::byte> make_frame(FrameType type, std::span<const std::byte> payload)
 {
     const auto header = frame_header(type, payload.size());
-    std::vector<std::byte> frame(header.begin(), header.end());
-    frame.insert(frame.end(), payload.begin(), payload.end());
+    std::vector<std::byte> frame(header.size() + payload.size());
+    std::ranges::copy(header, frame.begin());
+    std::ranges::copy(payload, frame.begin() + header.size());
     return frame;
 }
 

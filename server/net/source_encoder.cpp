@@ -51,9 +51,14 @@ std::string complaint(const ChildOutcome& outcome)
         case ChildOutcome::Kind::Stopped:
             break;
     }
-    return outcome.last_words.empty()
-               ? "the encoder failed with status " + std::to_string(outcome.exit_status)
-               : outcome.last_words;
+    constexpr std::string_view kToolName = "vsplit: ";
+    std::string words = outcome.last_words;
+    if (words.starts_with(kToolName))
+    {
+        words.erase(0, kToolName.size());
+    }
+    return words.empty() ? "the encoder failed with status " + std::to_string(outcome.exit_status)
+                         : words;
 }
 
 /// A killed encoder leaves its temporary file (see write_file_atomically()).

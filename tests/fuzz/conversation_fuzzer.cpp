@@ -27,18 +27,23 @@ net::StreamPtr make_stream()
     stream.info.header_bytes = 100;
     stream.info.file_bytes = bytes.size();
     std::uint64_t offset = stream.info.header_bytes;
-    for (std::uint32_t level = 0; level < 3; ++level)
+    for (std::uint32_t level = 0; offset < bytes.size(); ++level)
     {
-        const std::uint64_t chunk = level < 2 ? 30'000 : bytes.size() - offset;
+        const std::uint64_t chunk = std::min<std::uint64_t>(30'000, bytes.size() - offset);
+        const double error = 1.0 / (level + 1);
+        stream.info.chunks.push_back({
+            .kind = level == 0 ? proto::ChunkKind::Base : proto::ChunkKind::Batch,
+            .offset = offset,
+            .bytes = static_cast<std::uint32_t>(chunk),
+            .faces = 20 * (level + 1),
+            .rms_error = error,
+        });
         offset += chunk;
         stream.info.levels.push_back({
             .level = level,
-            .vertices = 10 * (level + 1),
             .faces = 20 * (level + 1),
-            .chunk_bytes = chunk,
             .cumulative_bytes = offset,
-            .rms_error = 1.0 / (level + 1),
-            .max_error = 1.0,
+            .rms_error = error,
         });
     }
     return std::make_shared<const net::ServedStream>(std::move(stream));
