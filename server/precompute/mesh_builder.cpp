@@ -4,10 +4,28 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
 namespace vsplit::precompute {
+
+bool is_position(const std::array<double, 3>& point)
+{
+    constexpr double kLargest = std::numeric_limits<float>::max();
+    return std::all_of(point.begin(), point.end(), [](double coordinate) {
+        return std::abs(coordinate) <= kLargest;  // false for NaN
+    });
+}
+
+tl::unexpected<Error> bad_position(std::size_t vertex)
+{
+    return fail(
+        ErrorCode::BadCoordinate,
+        "vertex " + std::to_string(vertex) +
+            " has a coordinate that is not finite or beyond single precision"
+    );
+}
 
 void MeshBuilder::reserve(std::size_t vertices, std::size_t triangles)
 {
@@ -17,12 +35,9 @@ void MeshBuilder::reserve(std::size_t vertices, std::size_t triangles)
 
 Result<void> MeshBuilder::add_vertex(const std::array<double, 3>& point)
 {
-    if (!std::isfinite(point[0]) || !std::isfinite(point[1]) || !std::isfinite(point[2]))
+    if (!is_position(point))
     {
-        return fail(
-            ErrorCode::BadCoordinate,
-            "vertex " + std::to_string(vertex_count()) + " has a coordinate that is not finite"
-        );
+        return bad_position(vertex_count());
     }
     if (mesh_.positions.size() >= proto::kMaxVertices)
     {

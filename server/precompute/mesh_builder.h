@@ -10,6 +10,13 @@
 
 namespace vsplit::precompute {
 
+/// Tells whether a point can be a vertex: every coordinate finite and within single precision, which
+/// is what clients draw and what mesh files hold. Thread safe.
+[[nodiscard]] bool is_position(const std::array<double, 3>& point);
+
+/// Says in words that a vertex is none. `vertex`: its index. Result: a BadCoordinate error.
+[[nodiscard]] tl::unexpected<Error> bad_position(std::size_t vertex);
+
 /// Collects the vertices and polygons that a mesh reader finds, and refuses what is not a mesh. Not
 /// thread safe. Safe on untrusted input.
 class MeshBuilder
@@ -18,7 +25,7 @@ public:
     /// Makes room. Precondition: the caller has checked both numbers against the size of its input.
     void reserve(std::size_t vertices, std::size_t triangles);
 
-    /// Appends a vertex. `point`: model units. Errors: BadCoordinate when it is not finite,
+    /// Appends a vertex. `point`: model units. Errors: BadCoordinate unless is_position(),
     /// InputTooLarge.
     [[nodiscard]] Result<void> add_vertex(const std::array<double, 3>& point);
 

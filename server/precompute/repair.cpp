@@ -1,10 +1,10 @@
 #include "precompute/repair.h"
 
 #include "format.h"
+#include "precompute/mesh_builder.h"
 #include "precompute/repair_steps.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -20,13 +20,9 @@ Result<void> check_input(const IndexedMesh& mesh)
     }
     for (std::size_t vertex = 0; vertex < mesh.positions.size(); ++vertex)
     {
-        const auto& [x, y, z] = mesh.positions[vertex];
-        if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z))
+        if (!is_position(mesh.positions[vertex]))
         {
-            return fail(
-                ErrorCode::BadCoordinate,
-                "vertex " + std::to_string(vertex) + " has a coordinate that is not finite"
-            );
+            return bad_position(vertex);
         }
     }
     for (std::size_t face = 0; face < mesh.triangles.size(); ++face)

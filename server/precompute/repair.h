@@ -11,12 +11,12 @@ namespace vsplit::precompute {
 /// What repair_mesh() found and did; every count is of the input as it was read.
 struct RepairReport
 {
-    std::uint32_t welded_vertices = 0;        ///< Merged into another one at exactly its position.
-    std::uint32_t isolated_vertices = 0;      ///< Dropped: no triangle uses them.
-    std::uint32_t degenerate_faces = 0;       ///< Dropped: an index repeats (after welding).
-    std::uint32_t duplicate_faces = 0;        ///< Dropped: the same three vertices as an earlier one.
-    std::uint32_t flipped_faces = 0;          ///< Turned round to agree with their neighbours.
-    std::uint32_t non_manifold_edges = 0;     ///< Cut: more than two faces, or not orientable.
+    std::uint32_t welded_vertices = 0;     ///< Merged into another one at exactly its position.
+    std::uint32_t isolated_vertices = 0;   ///< Dropped: no triangle uses them.
+    std::uint32_t degenerate_faces = 0;    ///< Dropped: an index repeats (after welding).
+    std::uint32_t duplicate_faces = 0;     ///< Dropped: the same three vertices as an earlier one.
+    std::uint32_t flipped_faces = 0;       ///< Turned round to agree with their neighbours.
+    std::uint32_t non_manifold_edges = 0;  ///< Cut: more than two faces, or not orientable.
     std::uint32_t non_manifold_vertices = 0;  ///< Cut: several fans of faces met in one vertex.
     std::uint32_t added_vertices = 0;         ///< Copies that the cutting made.
 

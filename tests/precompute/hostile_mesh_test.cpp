@@ -133,7 +133,7 @@ TEST_F(HostileMesh, RefusesEveryTruncationOfEveryFormat)
 
 TEST_F(HostileMesh, RefusesCoordinatesThatAreNotFinite)
 {
-    for (const std::string value : {"nan", "NaN", "inf", "-inf", "1e999"})
+    for (const std::string value : {"nan", "NaN", "inf", "-inf", "1e999", "1e39"})
     {
         const auto code = ErrorCode::BadCoordinate;
         expect_refused(
@@ -218,7 +218,7 @@ TEST_F(HostileMesh, SurvivesDamagedFilesOfEveryFormat)
         ASSERT_TRUE(precompute::write_mesh(path(name), tetrahedron()));
         std::ifstream in(path(name), std::ios::binary);
         const std::string whole((std::istreambuf_iterator<char>(in)), {});
-        for (int round = 0; round < 2000; ++round)
+        for (int round = 0; round < 400; ++round)
         {
             std::string damaged = whole;
             for (int change = 0; change < 3; ++change)

@@ -1,0 +1,12 @@
+# The fuzz preset does not build the server; this much of it needs no library and no files.
+vsplit_fuzzer(mesh_import_fuzzer mesh_import_fuzzer.cpp vsplit_mesh)
+foreach(
+    source
+    edge_table mesh_builder ply_header read_obj read_off read_ply read_stl repair repair_orient
+    repair_split repair_weld text_scan validate
+)
+    target_sources(
+        mesh_import_fuzzer PRIVATE ${PROJECT_SOURCE_DIR}/server/precompute/${source}.cpp
+    )
+endforeach()
+target_include_directories(mesh_import_fuzzer PRIVATE ${PROJECT_SOURCE_DIR}/server)
