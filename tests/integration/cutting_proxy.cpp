@@ -54,8 +54,13 @@ private:
 
 }  // namespace
 
-CuttingProxy::CuttingProxy(std::uint16_t server_port, std::vector<std::uint64_t> cuts)
-    : server_port_(server_port), cuts_(std::move(cuts)), listener_(Socket::listen())
+CuttingProxy::CuttingProxy(
+    std::uint16_t server_port, std::vector<std::uint64_t> cuts, std::function<void()> before_cut
+)
+    : server_port_(server_port),
+      cuts_(std::move(cuts)),
+      before_cut_(std::move(before_cut)),
+      listener_(Socket::listen())
 {
     thread_ = std::thread([this] { serve(); });
 }
@@ -112,7 +117,12 @@ void CuttingProxy::relay(const Socket& client, std::uint64_t cut)
         std::uint64_t payload = 0;
         const auto passed = counter.pass(std::span(buffer).first(count), allowed, payload);
         payload_bytes_ += payload;
-        if (!client.send(std::span(buffer).first(passed)) || payload >= allowed)
+        const bool sent = client.send(std::span(buffer).first(passed));
+        if (payload >= allowed)
+        {
+            before_cut_();
+        }
+        if (!sent || payload >= allowed)
         {
             return;
         }

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <thread>
 #include <vector>
 
@@ -14,8 +15,13 @@ namespace vsplit::test {
 class CuttingProxy
 {
 public:
-    /// Starts to listen. `server_port`: of 127.0.0.1; `cuts`: offsets in the stream, ascending.
-    CuttingProxy(std::uint16_t server_port, std::vector<std::uint64_t> cuts);
+    /// Starts to listen. `server_port`: of 127.0.0.1; `cuts`: offsets in the stream, ascending;
+    /// `before_cut`: called from the proxy's thread when a connection is about to be cut.
+    CuttingProxy(
+        std::uint16_t server_port,
+        std::vector<std::uint64_t> cuts,
+        std::function<void()> before_cut = [] {}
+    );
     CuttingProxy(const CuttingProxy&) = delete;
     CuttingProxy& operator=(const CuttingProxy&) = delete;
     ~CuttingProxy();
@@ -35,6 +41,7 @@ private:
 
     std::uint16_t server_port_;
     std::vector<std::uint64_t> cuts_;
+    std::function<void()> before_cut_;
     Socket listener_;
     std::atomic<std::uint64_t> payload_bytes_{0};
     std::atomic<std::uint32_t> connections_{0};

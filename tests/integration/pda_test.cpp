@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <csignal>
+#include <future>
 #include <optional>
 #include <thread>
 
@@ -111,14 +112,13 @@ TEST_F(Pda, ShowsAtEveryLevelTheMeshThatTheDecoderGives)
     }
 }
 
-TEST_F(Pda, ReconnectsAfterACutAtEveryLevelAndInsideChunksWithoutFetchingAnythingTwice)
+TEST_F(Pda, ReconnectsAfterACutAtAndInsideEveryChunkWithoutFetchingAnythingTwice)
 {
     const auto model = encode("bone.ply", "bone");
     const ServerProcess server(root_, logs_);
     std::vector<std::uint64_t> cuts;
-    for (std::size_t i = 0; i < model.info.chunks.size(); i += 4)
+    for (const auto& chunk : model.info.chunks)
     {
-        const auto& chunk = model.info.chunks[i];
         cuts.push_back(chunk.offset);
         cuts.push_back(chunk.offset + chunk.bytes / 2);
     }
@@ -140,16 +140,17 @@ TEST_F(Pda, GoesOnWhenTheServerIsKilledAndStartedAgain)
     const auto model = encode("beast.ply", "beast");
     std::optional<ServerProcess> server(std::in_place, root_, logs_);
     const auto port = server->port();
-    // Slow enough that the server dies in the middle: the file takes about two seconds.
-    const auto kbits = std::to_string(model.bytes.size() * 8 / 1000 / 2);
+    std::promise<void> killed;
+    const CuttingProxy proxy(port, {model.bytes.size() / 2}, [&] {
+        server->process().signal(SIGKILL);
+        static_cast<void>(server->process().wait(seconds(5)));
+        killed.set_value();
+    });
     const fs::path saved = folder_ / "saved.ply";
-    ChildProcess pda(
-        command(port, "beast", {"--link", kbits + ":5", "--save", saved.string()}), logs_
-    );
-    std::this_thread::sleep_for(std::chrono::milliseconds(800));
-    server->process().signal(SIGKILL);
-    static_cast<void>(server->process().wait(seconds(5)));
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    ChildProcess pda(command(proxy.port(), "beast", {"--save", saved.string()}), logs_);
+    ASSERT_EQ(killed.get_future().wait_for(seconds(20)), std::future_status::ready);
+    // Long enough that an attempt to reconnect finds nobody.
+    std::this_thread::sleep_for(std::chrono::milliseconds(400));
     server.emplace(root_, logs_, std::vector<std::string>{}, port);
 
     ASSERT_EQ(pda.wait(seconds(25)), 0) << pda.errors();
