@@ -45,6 +45,7 @@ protected:
         client_.close();
         work_.reset();
         thread_.join();
+        session_.reset();  // Its strand must go before the context does.
     }
 
     void start()
