@@ -20,6 +20,7 @@ struct ChildLimits
 /// How a child process ended.
 struct ChildOutcome
 {
+    /// The ways to end.
     enum class Kind : std::uint8_t
     {
         Exited,    ///< By itself; see exit_status.

@@ -27,6 +27,7 @@ struct Output
     std::span<const std::byte> head;  ///< Frames and the header of a Data frame.
     std::span<const std::byte> body;  ///< Payload of that Data frame, in the stream's own memory.
 
+    /// True when there is nothing to send.
     [[nodiscard]] bool empty() const { return head.empty() && body.empty(); }
 };
 

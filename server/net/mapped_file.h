@@ -34,8 +34,13 @@ public:
     /// Truncated when the file is empty.
     [[nodiscard]] static Result<MappedFile> open(const std::filesystem::path& path);
 
+    /// Unmaps and closes the file.
     ~MappedFile();
+
+    /// Takes the map over; `other` is left without one.
     MappedFile(MappedFile&& other) noexcept;
+
+    /// Exchanges the maps.
     MappedFile& operator=(MappedFile&& other) noexcept;
 
     /// The bytes of the file; valid while this object lives.

@@ -11,8 +11,11 @@
 
 #include <atomic>
 #include <csignal>
+#include <exception>
 #include <list>
+#include <netinet/in.h>
 #include <netinet/tcp.h>
+#include <sys/socket.h>
 #include <thread>
 #include <vector>
 
@@ -33,18 +36,13 @@ constexpr std::size_t kMaxRefusals = 64;
 
 constexpr std::chrono::milliseconds kAcceptRetry{100};
 
-template <typename Option>
-void set(Socket& socket, Option option)
-{
-    boost::system::error_code ignored;
-    socket.set_option(option, ignored);
-}
-
 void tune(Socket& socket)
 {
-    set(socket, asio::ip::tcp::no_delay(true));
-    using NotSentLow = asio::detail::socket_option::integer<IPPROTO_TCP, TCP_NOTSENT_LOWAT>;
-    set(socket, NotSentLow(kUnsentBytes));
+    const auto set = [&socket](int option, int value) {
+        ::setsockopt(socket.native_handle(), IPPROTO_TCP, option, &value, sizeof(value));
+    };
+    set(TCP_NODELAY, 1);
+    set(TCP_NOTSENT_LOWAT, kUnsentBytes);
 }
 
 std::string text_of(const asio::ip::tcp::endpoint& endpoint)
@@ -124,12 +122,30 @@ public:
         std::vector<std::jthread> threads;
         for (std::size_t i = 1; i < settings_.threads; ++i)
         {
-            threads.emplace_back([this] { context_.run(); });
+            threads.emplace_back([this] { work(); });
         }
-        context_.run();
+        work();
     }
 
 private:
+    /// Runs handlers until there is nothing left to do. What one of them throws (memory, for one)
+    /// ends that handler alone.
+    void work()
+    {
+        while (true)
+        {
+            try
+            {
+                context_.run();
+                return;
+            }
+            catch (const std::exception& thrown)
+            {
+                spdlog::error("defect: {}", thrown.what());
+            }
+        }
+    }
+
     asio::awaitable<void> accept_loop()
     {
         while (acceptor_.is_open())

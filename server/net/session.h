@@ -94,6 +94,7 @@ public:
     /// Answers with a failure instead of serving, then closes. Before start().
     void refuse(const Error& error) { conversation_.close_with(error); }
 
+    /// As SessionControl::finish().
     void finish() override
     {
         boost::asio::post(stream_.get_executor(), [self = this->shared_from_this()] {
@@ -102,6 +103,7 @@ public:
         });
     }
 
+    /// As SessionControl::abort().
     void abort() override
     {
         boost::asio::post(stream_.get_executor(), [self = this->shared_from_this()] {

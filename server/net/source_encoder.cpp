@@ -115,7 +115,7 @@ Result<void> SourceEncoder::encode(
     );
     if (!outcome)
     {
-        return fail(ErrorCode::EncodeFailed, "the server cannot start its encoder");
+        return fail(ErrorCode::IoError, "the server cannot start its encoder");
     }
     if (outcome->kind == ChildOutcome::Kind::Exited && outcome->exit_status == 0)
     {

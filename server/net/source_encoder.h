@@ -36,7 +36,8 @@ public:
 
     /// Encodes `source` into `target`; blocks until the child has ended. The target appears complete
     /// or not at all. Errors: EncodeFailed with the child's own words (without the folder of the
-    /// source), Cancelled after stop().
+    /// source), IoError when it cannot be started, Cancelled after
+    /// stop().
     [[nodiscard]] Result<void> encode(
         const std::filesystem::path& source, const std::filesystem::path& target
     ) const;

@@ -1,5 +1,6 @@
 #include "net/session.h"
 
+#include "net/stream_store.h"
 #include "net/test_streams.h"
 
 #include <boost/asio/executor_work_guard.hpp>
@@ -11,6 +12,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <future>
 #include <thread>
 
@@ -284,6 +286,25 @@ TEST_F(SessionTest, RefusedClientLearnsWhy)
     EXPECT_EQ(talk.failures[0].code, static_cast<unsigned>(ErrorCode::Overloaded));
     client_.close();
     static_cast<void>(summary());
+}
+
+TEST_F(SessionTest, FileThatIsCutWhileItIsSentEndsTheSessionOnly)
+{
+    const test::TemporaryFolder folder;
+    const auto path = folder.write("m.vsplit", file());
+    StreamStore store;
+    stream_ = store.open(path).value();
+    start();
+    send(
+        test::joined(encode(wire::Open{.model = "cow"}).value(), wire::make_frame(FrameType::Pause))
+    );
+    std::filesystem::resize_file(path, 1000);
+    send(wire::make_frame(FrameType::Resume));
+    Bytes received;
+    boost::system::error_code error;
+    asio::read(client_, asio::dynamic_buffer(received), error);
+    EXPECT_LT(received.size(), 100'000U);
+    EXPECT_NE(summary().reason, "closed");
 }
 
 TEST_F(SessionTest, NothingOfItIsLeftAfterwards)
