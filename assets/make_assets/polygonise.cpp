@@ -101,19 +101,21 @@ private:
             const std::size_t pair = inside == 1 ? 2 : 0;  // two on the same side
             std::swap(sorted[pair], sorted[pair + 1]);
         }
+        // Braces, not arguments: they are evaluated from left to right on every compiler, and the order
+        // of evaluation numbers the vertices.
         const auto [a, b, c, d] = sorted;
         if (inside == 1)
         {
-            add_triangle(crossing(a, b), crossing(a, c), crossing(a, d));
+            mesh_.triangles.push_back({crossing(a, b), crossing(a, c), crossing(a, d)});
         }
         else if (inside == 2)
         {
-            add_triangle(crossing(a, c), crossing(a, d), crossing(b, d));
-            add_triangle(crossing(a, c), crossing(b, d), crossing(b, c));
+            mesh_.triangles.push_back({crossing(a, c), crossing(a, d), crossing(b, d)});
+            mesh_.triangles.push_back({crossing(a, c), crossing(b, d), crossing(b, c)});
         }
         else if (inside == 3)
         {
-            add_triangle(crossing(a, d), crossing(b, d), crossing(c, d));
+            mesh_.triangles.push_back({crossing(a, d), crossing(b, d), crossing(c, d)});
         }
     }
 
@@ -130,11 +132,6 @@ private:
             mesh_.positions.push_back(to_array(point(low) + (point(high) - point(low)) * t));
         }
         return place->second;
-    }
-
-    void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c)
-    {
-        mesh_.triangles.push_back({a, b, c});
     }
 
     Lattice lattice_;
