@@ -3,6 +3,7 @@
 #include "precompute/encode_mesh.h"
 #include "precompute/mesh_io.h"
 #include "precompute/repair.h"
+#include "precompute/validate.h"
 #include "progress_bar.h"
 #include "report.h"
 
@@ -145,7 +146,7 @@ void print_outcome(const EncodeArguments& arguments, const EncodeOutcome& outcom
     );
 }
 
-/// Reads and repairs the input.
+/// Reads and repairs the input; the encoder gets nothing that was not checked.
 Result<void> load(const EncodeArguments& arguments, EncodeOutcome& outcome)
 {
     Stopwatch watch;
@@ -162,8 +163,9 @@ Result<void> load(const EncodeArguments& arguments, EncodeOutcome& outcome)
         return tl::unexpected<Error>(error);
     }
     outcome.repaired = std::move(*repaired);
+    const auto manifold = precompute::check_manifold(outcome.repaired.mesh);
     outcome.seconds.repair = watch.lap();
-    return {};
+    return manifold ? Result<void>{} : fail(ErrorCode::Internal, manifold.error().message);
 }
 
 /// Encodes what load() left and writes the stream.

@@ -12,6 +12,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace vsplit::tools {
@@ -130,19 +131,26 @@ std::vector<GridPoint> sorted_positions(const GridMesh& mesh)
     return positions;
 }
 
-/// Vertices that are left when cut copies count once.
-std::size_t source_vertex_count(std::span<const std::uint32_t> stitches, std::size_t vertex_count)
+/// A vertex of the source: its position and how many copies it was cut into.
+using SourceVertex = std::pair<GridPoint, std::uint32_t>;
+
+/// The vertices that stitching gives, sorted. `stitches`: per vertex the one it is one with, or empty.
+std::vector<SourceVertex> stitched_vertices(
+    std::span<const std::uint32_t> stitches, const std::vector<GridPoint>& positions
+)
 {
-    if (stitches.empty())
+    std::vector<SourceVertex> vertices;
+    for (const GridPoint& position : positions)
     {
-        return vertex_count;
+        vertices.emplace_back(position, stitches.empty() ? 1 : 0);
     }
-    std::size_t count = 0;
-    for (std::size_t vertex = 0; vertex < stitches.size(); ++vertex)
+    for (const std::uint32_t source : stitches)
     {
-        count += stitches[vertex] == vertex ? 1 : 0;
+        ++vertices[source].second;
     }
-    return count;
+    std::erase_if(vertices, [](const SourceVertex& vertex) { return vertex.second == 0; });
+    std::sort(vertices.begin(), vertices.end());
+    return vertices;
 }
 
 Result<void> compare(const codec::StreamDecoder& decoder, const precompute::RepairedMesh& source)
@@ -172,13 +180,13 @@ Result<void> compare(const codec::StreamDecoder& decoder, const precompute::Repa
     {
         return mismatch("the triangles are not those of the quantised source");
     }
-    const std::size_t stitched = source_vertex_count(decoder.stitches(), decoder.vertices());
-    const std::size_t wanted = source_vertex_count(source.stitches, expected.positions.size());
+    const auto stitched = stitched_vertices(decoder.stitches(), decoded.positions);
+    const auto wanted = stitched_vertices(source.stitches, expected.positions);
     if (stitched != wanted)
     {
         return mismatch(
-            "stitching gives " + std::to_string(stitched) + " vertices, the source has " +
-            std::to_string(wanted)
+            "stitching gives " + std::to_string(stitched.size()) + " vertices, the source has " +
+            std::to_string(wanted.size()) + ", or other ones"
         );
     }
     return {};
