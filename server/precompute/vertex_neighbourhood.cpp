@@ -19,8 +19,8 @@ constexpr std::size_t kMostNeighbours = 25;
 constexpr std::size_t kCandidates = 45;
 // Rings grow without bound only along a strip one triangle wide; there 12 rings hold 24 vertices.
 constexpr int kMostRings = 12;
-// A hub of thousands of triangles would make each query of its neighbours as long: ring growth
-// takes a part of such a ring, the first in ascending order.
+// A hub of thousands of triangles would make the query of each of its neighbours as long: growth stops
+// in the middle of such a ring.
 constexpr std::size_t kMostVisited = 512;
 
 }  // namespace
@@ -84,9 +84,12 @@ void NeighbourhoodSearch::grow(std::uint32_t vertex, std::size_t enough, int mos
     for (int ring = 0; ring < most_rings && found_.size() <= enough; ++ring)
     {
         const std::size_t ring_end = found_.size();
-        for (; ring_begin < ring_end && found_.size() < kMostVisited; ++ring_begin)
+        for (; ring_begin < ring_end; ++ring_begin)
         {
-            for (const std::uint32_t neighbour : rings_[found_[ring_begin]])
+            const auto neighbours = rings_[found_[ring_begin]];
+            const std::size_t room = kMostVisited - found_.size();
+            for (const std::uint32_t neighbour :
+                 neighbours.first(std::min(neighbours.size(), room)))
             {
                 if (visited_[neighbour] != stamp_)
                 {
@@ -143,7 +146,9 @@ std::span<const std::uint32_t> NeighbourhoodSearch::adaptive(std::uint32_t verte
     {
         sum += std::sqrt(candidate.squared_distance);
     }
-    const double radius = sum / static_cast<double>(std::max<std::size_t>(1, candidates_.size()));
+    // A hair more, so that rounding does not decide about points at exactly the mean distance.
+    const double radius =
+        (1.0 + 1e-9) * sum / static_cast<double>(std::max<std::size_t>(1, candidates_.size()));
     const auto outside =
         std::find_if(candidates_.begin(), candidates_.end(), [radius](const Candidate& c) {
             return !(c.squared_distance <= radius * radius);

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 namespace vsplit::precompute {
 namespace {
@@ -138,6 +139,30 @@ TEST(NeighbourhoodSearch, StaysOnItsOwnSheet)
     NeighbourhoodSearch search(sheets, rings);
     EXPECT_THAT(search.adaptive(60), testing::Each(testing::Lt(count)));
     EXPECT_THAT(search.adaptive(60 + count), testing::Each(testing::Ge(count)));
+}
+
+TEST(NeighbourhoodSearch, TakesPartOfAHugeRing)
+{
+    // A fan of 5000 triangles round vertex 0.
+    constexpr std::uint32_t kSpokes = 5000;
+    IndexedMesh fan{.positions = {{0, 0, 0}}, .triangles = {}};
+    for (std::uint32_t i = 0; i < kSpokes; ++i)
+    {
+        const double angle = 2.0 * std::numbers::pi * i / kSpokes;
+        fan.positions.push_back({std::cos(angle), std::sin(angle), 0.0});
+        fan.triangles.push_back({0, 1 + i, 1 + (i + 1) % kSpokes});
+    }
+    const OneRings rings(fan);
+    EXPECT_EQ(rings[0].size(), kSpokes);
+    NeighbourhoodSearch search(fan, rings);
+    for (const std::uint32_t v : {0U, 1U, 2500U, kSpokes})
+    {
+        const auto near = search.two_ring(v, 2 * kSpokes);
+        EXPECT_GE(near.size(), 24U);
+        EXPECT_LE(near.size(), 512U);
+        EXPECT_THAT(near, testing::Not(testing::Contains(v)));
+        EXPECT_GE(search.adaptive(v).size(), 16U);
+    }
 }
 
 TEST(NeighbourhoodSearch, TakesAllThereIsOfASmallComponent)
