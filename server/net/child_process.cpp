@@ -66,6 +66,7 @@ void limit(int resource, std::uint64_t value)
 )
 {
     ::setpgid(0, 0);
+    ::signal(SIGPIPE, SIG_DFL);
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
     if (::getppid() != parent)

@@ -4,6 +4,7 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <exception>
 #include <iostream>
@@ -48,6 +49,8 @@ int serve(const vsplit::net::Options& options)
 
 int main(int argc, char** argv)
 {
+    // A log whose reader has gone must not end the server.
+    static_cast<void>(std::signal(SIGPIPE, SIG_IGN));
     try
     {
         const auto options = vsplit::net::parse_options(argc, argv);

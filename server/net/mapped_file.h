@@ -40,6 +40,9 @@ public:
     /// Takes the map over; `other` is left without one.
     MappedFile(MappedFile&& other) noexcept;
 
+    MappedFile(const MappedFile&) = delete;
+    MappedFile& operator=(const MappedFile&) = delete;
+
     /// Exchanges the maps.
     MappedFile& operator=(MappedFile&& other) noexcept;
 

@@ -30,6 +30,8 @@ public:
     /// `root`: absolute, canonical folder of the models; `encoder`: how to treat source meshes.
     Server(ServerSettings settings, std::filesystem::path root, EncoderSettings encoder);
     ~Server();
+    Server(const Server&) = delete;
+    Server& operator=(const Server&) = delete;
 
     /// Opens the port. Returns the address and port to connect to, "[::1]:7420" for IPv6.
     /// Errors: BadRequest for a malformed address, IoError when the port cannot be had.
