@@ -24,6 +24,16 @@ inline constexpr std::uint32_t kMaxHeaderBytes = 1U << 24;
 /// Chunks are cut so that they stay near this size; a reader accepts larger ones within its limits.
 inline constexpr std::uint32_t kTargetChunkBytes = 64U * 1024U;
 
+/// Length of the CRC-32C that ends every chunk and is part of its length.
+inline constexpr std::uint32_t kChunkChecksumBytes = 4;
+
+/// Added to the position bits when the grid's four numbers are binary32 instead of binary64.
+inline constexpr std::uint8_t kSinglePrecisionGrid = 0x80;
+
+/// Flags in the low bits of a row's length.
+inline constexpr std::uint64_t kRowContinuesLevel = 1;  ///< The level goes on in the next chunk.
+inline constexpr std::uint64_t kRowHasBoundary = 2;     ///< A count of boundary splits follows.
+
 /// What a chunk holds. Kinds below 64 are required: a reader that does not know one refuses the
 /// stream; kinds from 64 on are optional and may be skipped by their length.
 enum class ChunkKind : std::uint8_t

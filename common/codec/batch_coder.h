@@ -24,11 +24,11 @@ struct BatchState
     PredictionWeights weights = kInitialWeights;
     LearningRates rates;
     std::vector<Split> splits;     ///< Of the current chunk.
-    std::uint32_t level = 0;       ///< Batch levels started.
+    std::uint32_t batch = 0;       ///< Batches started.
     int shift = 0;                 ///< Bits of precision that positions lack.
     int bits = 12;                 ///< Position bits of the full grid.
     std::int32_t cursor = 0;       ///< Next face to ask.
-    std::int32_t level_faces = 0;  ///< Faces when the level started.
+    std::int32_t batch_faces = 0;  ///< Faces when the batch started.
 
     /// Largest coordinate on the current grid.
     [[nodiscard]] std::int32_t max_index() const { return ((1 << bits) - 1) >> shift; }
@@ -37,8 +37,16 @@ struct BatchState
 /// Bits of the field that tells a level's shift.
 inline constexpr int kShiftBits = 5;
 
-/// Starts a level: its shift, one bit an axis and step for every known vertex, then the edges are
-/// measured. `full`: full-precision positions by vertex, encoder only.
+/// Bits of the field that tells how many batches a level has, less one.
+inline constexpr int kBatchCountBits = 3;
+
+/// Most batches of a level.
+inline constexpr std::size_t kMaxBatches = std::size_t{1} << kBatchCountBits;
+
+/// Bits of the field that tells how many splits a batch has, unless it is the chunk's last one.
+inline constexpr int kSplitCountBits = 12;
+
+/// Starts a level: its shift, one bit an axis and step for every known vertex. `full`: full-precision positions by vertex, encoder only.
 /// Error: BadChunk when the shift grows. Safe on untrusted input.
 template <typename Coder>
 [[nodiscard]] Result<void> code_level_start(
@@ -74,16 +82,21 @@ template <typename Coder>
         points[v].z = points[v].z * scale + static_cast<float>(low[2]);
     }
     state.shift = shift;
-    state.mesh.start_level();
-    ++state.level;
-    state.rates = LearningRates::of_level(state.level);
-    state.cursor = 0;
-    state.level_faces = static_cast<std::int32_t>(state.mesh.face_count());
     return {};
 }
 
-/// Codes where the next `count` splits of the level are; they are in state.splits afterwards.
-/// Error: BadChunk when the level has no room for so many. Safe on untrusted input.
+/// Starts a batch: measures the edges and frees every face.
+inline void start_batch(BatchState& state)
+{
+    state.mesh.start_batch();
+    ++state.batch;
+    state.rates = LearningRates::of_batch(state.batch);
+    state.cursor = 0;
+    state.batch_faces = static_cast<std::int32_t>(state.mesh.face_count());
+}
+
+/// Codes where the next `count` splits of the batch are; they are in state.splits afterwards.
+/// Error: BadChunk when the batch has no room for so many. Safe on untrusted input.
 template <typename Coder>
 [[nodiscard]] Result<void> code_connectivity(
     Coder& coder, BatchState& state, std::uint32_t count, const SplitPlan* plan
@@ -91,7 +104,7 @@ template <typename Coder>
 {
     state.splits.clear();
     ConnectivityCoder<Coder> connectivity(state.mesh, state.connectivity, coder, state.rates, plan);
-    if (!connectivity.run(state.cursor, state.level_faces, count, state.splits))
+    if (!connectivity.run(state.cursor, state.batch_faces, count, state.splits))
     {
         return fail(ErrorCode::BadChunk, "a chunk announces more splits than it holds");
     }

@@ -49,16 +49,16 @@ struct ConnectivityModel
     std::array<std::int32_t, 16> boundary{};
 };
 
-/// Learning rates, 1/32768, of one level: high while little was seen, then falling.
+/// Learning rates, 1/32768, of one batch: high while little was seen, then falling.
 struct LearningRates
 {
     std::int32_t split = 650;
     std::int32_t wedge = 1100;
 
-    /// The rates of the `level`-th batch level, level >= 1.
-    [[nodiscard]] static LearningRates of_level(std::uint32_t level)
+    /// The rates of the `batch`-th batch, batch >= 1.
+    [[nodiscard]] static LearningRates of_batch(std::uint32_t batch)
     {
-        const auto number = static_cast<std::int32_t>(std::min<std::uint32_t>(level, 10000));
+        const auto number = static_cast<std::int32_t>(std::min<std::uint32_t>(batch, 10000));
         return {std::max(650, 4000 / number), std::max(1100, 7000 / number)};
     }
 };
@@ -484,8 +484,12 @@ private:
 
     void change_valence(std::uint32_t vertex, std::int32_t difference)
     {
-        valences_[vertex] =
-            static_cast<std::uint8_t>(clamp_int(valences_[vertex] + difference, 0, 255));
+        std::uint16_t& valence = valences_[vertex];
+        if (valence != kManyNeighbours)
+        {
+            valence =
+                static_cast<std::uint16_t>(clamp_int(valence + difference, 0, kManyNeighbours));
+        }
     }
 
     /// Brings the valences up to date at once, so that later questions of the level see them.
@@ -505,7 +509,7 @@ private:
 
     Face* faces_;
     Point* points_;
-    std::uint8_t* valences_;
+    std::uint16_t* valences_;
     ConnectivityModel& model_;
     Coder& coder_;
     LearningRates rates_;

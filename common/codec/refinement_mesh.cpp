@@ -26,12 +26,12 @@ std::uint8_t edge_log(const Vector3& edge)
 }  // namespace
 
 void RefinementMesh::reserve(
-    std::uint32_t vertices, std::uint32_t faces, std::uint32_t largest_level
+    std::uint32_t vertices, std::uint32_t faces, std::uint32_t largest_batch
 )
 {
     storage_.assign(std::size_t{faces} + 1, Face{});
     storage_.front().state = FaceState::Boundary;
-    added_.assign(largest_level, Face{});
+    added_.assign(largest_batch, Face{});
     places_.assign(faces, 0);
     points_.assign(vertices, Point{});
     valences_.assign(vertices, 0);
@@ -142,12 +142,14 @@ Result<void> RefinementMesh::check_fans()
         {
             return fail(ErrorCode::BadChunk, "the base mesh has a non-manifold vertex");
         }
-        valences_[v] = static_cast<std::uint8_t>(std::min(255U, corners[v] + (closed ? 0U : 1U)));
+        valences_[v] = static_cast<std::uint16_t>(
+            std::min<std::uint32_t>(kManyNeighbours, corners[v] + (closed ? 0U : 1U))
+        );
     }
     return {};
 }
 
-void RefinementMesh::start_level()
+void RefinementMesh::start_batch()
 {
     for (std::uint32_t f = 0; f < face_count_; ++f)
     {
@@ -158,7 +160,7 @@ void RefinementMesh::start_level()
         face.edge_log = {edge_log(c - b), edge_log(a - c), edge_log(b - a)};
         face.state = FaceState::Free;
     }
-    level_start_ = face_count_;
+    batch_start_ = face_count_;
 }
 
 void RefinementMesh::link(Corner a, Corner b)
@@ -246,22 +248,22 @@ void RefinementMesh::apply(std::span<const Split> splits, std::vector<TriangleUp
         {
             updates->push_back({faces()[f].slot, faces()[f].vertex});
         }
-        valences_[removed] = static_cast<std::uint8_t>(split.wedge + 2);
+        valences_[removed] = static_cast<std::uint16_t>(split.wedge + 2);
         faces()[split.seed].state =
             split.kind == SplitKind::Interior ? FaceState::SeedOfTwo : FaceState::SeedOfOne;
     }
 }
 
-void RefinementMesh::finish_level()
+void RefinementMesh::finish_batch()
 {
-    const std::uint32_t added = face_count_ - level_start_;
-    std::copy_n(faces() + level_start_, added, added_.begin());
+    const std::uint32_t added = face_count_ - batch_start_;
+    std::copy_n(faces() + batch_start_, added, added_.begin());
     std::int32_t place = 0;
-    std::uint32_t next_added = level_start_;
+    std::uint32_t next_added = batch_start_;
     const auto children = [](FaceState state) {
         return state == FaceState::SeedOfTwo ? 2U : state == FaceState::SeedOfOne ? 1U : 0U;
     };
-    for (std::uint32_t f = 0; f < level_start_; ++f)
+    for (std::uint32_t f = 0; f < batch_start_; ++f)
     {
         places_[f] = place++;
         for (std::uint32_t i = children(faces()[f].state); i > 0; --i)
@@ -271,7 +273,7 @@ void RefinementMesh::finish_level()
     }
     // Faces only move towards the end, so moving the last one first overwrites nothing.
     std::uint32_t from = added;
-    for (std::uint32_t f = level_start_; f-- > 0;)
+    for (std::uint32_t f = batch_start_; f-- > 0;)
     {
         const std::uint32_t count = children(faces()[f].state);
         Face* const target = faces() + places_[f];

@@ -34,11 +34,11 @@ using Corner = std::int32_t;
     return corner + 2 - 3 * ((corner | (corner >> 1)) & 1);
 }
 
-/// Where a face stands in the traversal of a level.
+/// Where a face stands in the traversal of a batch.
 enum class FaceState : std::uint8_t
 {
     Free = 0,       ///< May still belong to a split.
-    Taken = 1,      ///< In a wedge, or made by a split of this level.
+    Taken = 1,      ///< In a wedge, or made by a split of this batch.
     Refused = 2,    ///< Asked, belongs to no split.
     Boundary = 3,   ///< Not a face: what lies across a boundary edge.
     SeedOfOne = 4,  ///< In a wedge, the face asked; its split added one face.
@@ -97,14 +97,17 @@ struct Split
 /// Longest wedge; the removed vertex has at most kMaxWedge + 2 neighbours.
 inline constexpr int kMaxWedge = 4;
 
+/// Valence that a RefinementMesh no longer counts exactly.
+inline constexpr std::uint16_t kManyNeighbours = 65535;
+
 /// The mesh while it is refined: faces with neighbours in an order that keeps neighbours close in
 /// memory, positions on the current grid, valences. All memory is reserved up front. Shared by decoder
 /// and encoder. Not thread safe.
 class RefinementMesh
 {
 public:
-    /// Reserves room for the final mesh. `largest_level`: most faces that one level adds.
-    void reserve(std::uint32_t vertices, std::uint32_t faces, std::uint32_t largest_level);
+    /// Reserves room for the final mesh. `largest_batch`: most faces that one batch adds.
+    void reserve(std::uint32_t vertices, std::uint32_t faces, std::uint32_t largest_batch);
 
     /// Takes over a base mesh whose positions are in units of 2^shift cells.
     /// `max_index`: largest coordinate on that grid. Errors: BadChunk when an index or a coordinate is
@@ -112,17 +115,17 @@ public:
     /// Precondition: it fits the reservation. Safe on untrusted input.
     [[nodiscard]] Result<void> set_base(const GridMesh& base, std::int32_t max_index);
 
-    /// Prepares a level: measures every edge and frees every face.
-    void start_level();
+    /// Prepares a batch: measures every edge and frees every face.
+    void start_batch();
 
     /// Carries out the splits of one chunk; the removed vertices' positions must be in place at
     /// vertex_count() onwards. Changed triangles are appended to `updates` when given.
     /// Precondition: room for the new faces; splits as the connectivity coder made them.
     void apply(std::span<const Split> splits, std::vector<TriangleUpdate>* updates);
 
-    /// Ends a level: moves new faces beside the face whose wedge they came from, so that neighbours
+    /// Ends a batch: moves new faces beside the face whose wedge they came from, so that neighbours
     /// stay close in memory. Slots do not change.
-    void finish_level();
+    void finish_batch();
 
     /// Number of faces that a chunk's splits add.
     [[nodiscard]] static std::uint32_t added_faces(std::span<const Split> splits);
@@ -146,8 +149,8 @@ public:
 
     [[nodiscard]] const Point* points() const { return points_.data(); }
 
-    /// Valences by vertex (edges; 255 stands for 255 or more).
-    [[nodiscard]] std::uint8_t* valences() { return valences_.data(); }
+    /// Valences by vertex (edges); kManyNeighbours stands for that many or more and never changes.
+    [[nodiscard]] std::uint16_t* valences() { return valences_.data(); }
 
     [[nodiscard]] std::uint32_t vertex(Corner corner) const
     {
@@ -168,13 +171,13 @@ private:
     void split_left(const Split& split, Corner last, std::uint32_t kept, std::uint32_t removed);
 
     std::vector<Face> storage_;  ///< One sentinel, then the faces.
-    std::vector<Face> added_;    ///< Room for the faces of the largest level.
+    std::vector<Face> added_;    ///< Room for the faces of the largest batch.
     std::vector<std::int32_t> places_;
     std::vector<Point> points_;
-    std::vector<std::uint8_t> valences_;
+    std::vector<std::uint16_t> valences_;
     std::uint32_t vertex_count_ = 0;
     std::uint32_t face_count_ = 0;
-    std::uint32_t level_start_ = 0;  ///< Faces when the level started.
+    std::uint32_t batch_start_ = 0;  ///< Faces when the batch started.
 };
 
 }  // namespace vsplit::codec

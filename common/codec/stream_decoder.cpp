@@ -5,7 +5,6 @@
 #include "codec/entropy_coder.h"
 #include "codec/stitch_coder.h"
 #include "core/assert.h"
-#include "core/crc32c.h"
 
 #include <algorithm>
 #include <optional>
@@ -140,14 +139,12 @@ private:
     Result<Step> decode_chunk()
     {
         const ChunkInfo& chunk = info_->chunks[next_];
-        if (crc32c(buffer_) != chunk.checksum)
-        {
-            return fail(ErrorCode::BadChecksum, "a chunk is damaged", chunk.offset);
-        }
+        const auto contents = chunk_contents(buffer_, chunk.offset);
+        VSPLIT_TRY(contents);
         Step step = current(StepKind::SkippedChunk);
         step.chunk_bytes = chunk.bytes;
         updates_.clear();
-        const auto done = decode_contents(chunk, step);
+        const auto done = decode_contents(chunk, *contents, step);
         if (!done)
         {
             return fail(done.error().code, done.error().message, chunk.offset);
@@ -165,11 +162,13 @@ private:
         return step;
     }
 
-    Result<void> decode_contents(const ChunkInfo& chunk, Step& step)
+    Result<void> decode_contents(
+        const ChunkInfo& chunk, std::span<const std::byte> bytes, Step& step
+    )
     {
         if (chunk.kind == proto::ChunkKind::Stitch && chunk.codec == 0)
         {
-            return decode_stitches();
+            return decode_stitches(bytes);
         }
         if (static_cast<std::uint8_t>(chunk.kind) >= proto::kFirstOptionalChunkKind)
         {
@@ -177,13 +176,12 @@ private:
         }
         step.kind = StepKind::Chunk;
         step.level_complete = chunk.ends_level;
-        return chunk.kind == proto::ChunkKind::Base ? decode_base(chunk, step)
-                                                    : decode_batch(chunk, step);
+        return chunk.kind == proto::ChunkKind::Base ? decode_base(chunk, bytes, step)
+                                                    : decode_batch(chunk, bytes, step);
     }
 
-    Result<void> decode_base(const ChunkInfo& chunk, Step& step)
+    Result<void> decode_base(const ChunkInfo& chunk, std::span<const std::byte> bytes, Step& step)
     {
-        const auto bytes = std::span<const std::byte>(buffer_);
         if (bytes.empty() || static_cast<int>(bytes[0]) >= info_->grid.bits || !chunk.ends_level)
         {
             return fail(ErrorCode::BadChunk, "the base chunk is malformed");
@@ -201,41 +199,64 @@ private:
         return {};
     }
 
-    Result<void> decode_batch(const ChunkInfo& chunk, Step& step)
+    Result<void> decode_batch(const ChunkInfo& chunk, std::span<const std::byte> bytes, Step& step)
     {
         BitDecoder bits;
-        VSPLIT_TRY(bits.start(buffer_));
+        VSPLIT_TRY(bits.start(bytes));
         const int shift = state_.shift;
+        std::uint32_t batches = 1;
         if (info_->chunks[next_ - 1].ends_level)
         {
             VSPLIT_TRY(code_level_start(bits, state_, 0, {}));
+            batches = bits.raw(0, kBatchCountBits) + 1;
+            start_batch(state_);
         }
         step.first_moved_vertex = state_.shift == shift ? step.first_new_vertex : 0;
-        const std::uint32_t count = chunk.vertices - state_.mesh.vertex_count();
-        VSPLIT_TRY(code_connectivity(bits, state_, count, nullptr));
-        code_weights(bits, state_, false, {});
-        VSPLIT_TRY(code_positions(bits, state_, {}));
+        for (; batches > 1; --batches)
+        {
+            VSPLIT_TRY(decode_splits(bits, chunk, bits.raw(0, kSplitCountBits)));
+            state_.mesh.finish_batch();
+            start_batch(state_);
+        }
+        VSPLIT_TRY(decode_splits(bits, chunk, chunk.vertices - state_.mesh.vertex_count()));
         VSPLIT_TRY(bits.finish());
-        if (RefinementMesh::added_faces(state_.splits) != chunk.faces - state_.mesh.face_count())
+        if (state_.mesh.face_count() != chunk.faces)
         {
             return fail(ErrorCode::BadChunk, "a chunk adds other faces than the index says");
         }
-        state_.mesh.apply(state_.splits, &updates_);
         if (chunk.ends_level)
         {
-            state_.mesh.finish_level();
+            state_.mesh.finish_batch();
         }
         return {};
     }
 
-    Result<void> decode_stitches()
+    /// Decodes and carries out `count` splits of a batch.
+    Result<void> decode_splits(BitDecoder& bits, const ChunkInfo& chunk, std::uint32_t count)
+    {
+        if (count > chunk.vertices - state_.mesh.vertex_count())
+        {
+            return fail(ErrorCode::BadChunk, "a chunk holds more splits than the index says");
+        }
+        VSPLIT_TRY(code_connectivity(bits, state_, count, nullptr));
+        code_weights(bits, state_, false, {});
+        VSPLIT_TRY(code_positions(bits, state_, {}));
+        if (RefinementMesh::added_faces(state_.splits) > chunk.faces - state_.mesh.face_count())
+        {
+            return fail(ErrorCode::BadChunk, "a chunk adds other faces than the index says");
+        }
+        state_.mesh.apply(state_.splits, &updates_);
+        return {};
+    }
+
+    Result<void> decode_stitches(std::span<const std::byte> bytes)
     {
         if (state_.mesh.vertex_count() != info_->vertex_count || state_.shift != 0)
         {
             return fail(ErrorCode::BadChunk, "a stitch chunk comes before the last level");
         }
         BitDecoder bits;
-        VSPLIT_TRY(bits.start(buffer_));
+        VSPLIT_TRY(bits.start(bytes));
         stitches_.assign(info_->vertex_count, 0);
         code_stitches(
             bits, [this](std::uint32_t v) { return grid_position(v); }, stitches_

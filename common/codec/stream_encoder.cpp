@@ -17,8 +17,11 @@ namespace {
 
 constexpr std::uint32_t kNoVertex = 0xFFFFFFFF;
 
-/// Splits per chunk until the first chunk has told what they cost.
-constexpr std::uint32_t kFirstChunkSplits = 8192;
+/// A chunk costs about ten bytes of its own; below this length that would be felt.
+constexpr std::size_t kSmallestChunkBytes = 700;
+
+/// Splits from which a chunk tells what splits cost.
+constexpr std::uint32_t kTellingSplits = 64;
 
 /// Builds the stream chunk by chunk, keeping the mesh as the decoder will have it.
 class StreamBuilder
@@ -63,8 +66,7 @@ private:
         ChunkInfo chunk;
         chunk.kind = kind;
         chunk.ends_level = ends != nullptr || kind == proto::ChunkKind::Stitch;
-        chunk.bytes = static_cast<std::uint32_t>(bytes.size());
-        chunk.checksum = crc32c(bytes);
+        chunk.bytes = static_cast<std::uint32_t>(bytes.size()) + proto::kChunkChecksumBytes;
         chunk.vertices = state_.mesh.vertex_count();
         chunk.faces = state_.mesh.face_count();
         if (ends != nullptr)
@@ -74,6 +76,7 @@ private:
         }
         chunks_.push_back(chunk);
         payload_.write_bytes(bytes);
+        payload_.write(crc32c(bytes));
         if (progress_)
         {
             progress_(
@@ -132,15 +135,18 @@ private:
 
     void reserve()
     {
-        std::size_t largest_level = 0;
+        std::size_t largest_batch = 0;
         for (const PlannedLevel& level : plan_.levels)
         {
-            largest_level = std::max(largest_level, level.collapses.size() * 2);
+            for (const auto& batch : level.batches)
+            {
+                largest_batch = std::max(largest_batch, batch.size() * 2);
+            }
         }
         state_.mesh.reserve(
             static_cast<std::uint32_t>(plan_.mesh->positions.size()),
             static_cast<std::uint32_t>(plan_.mesh->triangles.size()),
-            static_cast<std::uint32_t>(largest_level)
+            static_cast<std::uint32_t>(largest_batch)
         );
     }
 
@@ -170,7 +176,7 @@ private:
         return corner;
     }
 
-    Result<SplitPlan> plan_splits(const PlannedLevel& level)
+    Result<SplitPlan> plan_splits(std::span<const Collapse> batch)
     {
         const RefinementMesh& mesh = state_.mesh;
         std::vector<Corner> corner_of(mesh.vertex_count(), -1);
@@ -184,7 +190,7 @@ private:
         }
         SplitPlan plan;
         plan.split_of_face.assign(mesh.face_count(), SplitPlan::kNoSplit);
-        for (const Collapse& collapse : level.collapses)
+        for (const Collapse& collapse : batch)
         {
             Split split;
             split.first = find_wedge(collapse, corner_of[place_[collapse.kept]]);
@@ -211,30 +217,61 @@ private:
     Result<void> add_level(const PlannedLevel& level)
     {
         BitEncoder bits;
+        const int shift = state_.shift;
         VSPLIT_TRY(code_level_start(bits, state_, level.shift, full_));
-        const auto plan = plan_splits(level);
-        VSPLIT_TRY(plan);
-        std::size_t left = level.collapses.size();
-        do
+        bits.raw(static_cast<std::uint32_t>(level.batches.size() - 1), kBatchCountBits);
+        for (std::size_t i = 0; i + 1 < level.batches.size(); ++i)
         {
-            const std::size_t chunks = (left + chunk_splits_ - 1) / chunk_splits_;
-            const std::size_t count = chunks > 1 ? (left + chunks - 1) / chunks : left;
-            VSPLIT_TRY(
-                add_batch(bits, level, *plan, static_cast<std::uint32_t>(count), count == left)
-            );
-            left -= count;
+            start_batch(state_);
+            const auto plan = plan_splits(level.batches[i]);
+            VSPLIT_TRY(plan);
+            const auto count = static_cast<std::uint32_t>(level.batches[i].size());
+            bits.raw(count, kSplitCountBits);
+            VSPLIT_TRY(add_splits(bits, level.batches[i], *plan, count));
+            state_.mesh.finish_batch();
         }
-        while (left > 0);
-        state_.mesh.finish_level();
+        start_batch(state_);
+        const std::size_t refinement =
+            full_.size() * 3 * static_cast<std::size_t>(shift - state_.shift) / 8;
+        return add_last_batch(bits, level, refinement);
+    }
+
+    /// Codes the last batch of a level, cut into chunks when it is large. `refinement`: bytes of raw
+    /// refinement bits that ride in the first chunk, which therefore holds fewer splits.
+    Result<void> add_last_batch(BitEncoder& bits, const PlannedLevel& level, std::size_t refinement)
+    {
+        const auto& batch = level.batches.back();
+        const auto plan = plan_splits(batch);
+        VSPLIT_TRY(plan);
+        std::size_t left = batch.size();
+        std::size_t chunks = level.batches.size() > 1 ? 1 : chunk_count(left, refinement);
+        for (; chunks > 0; --chunks, refinement = 0)
+        {
+            const std::size_t share = (split_bytes(left) + refinement) / chunks;
+            const std::size_t fitting = split_count(share - std::min(share, refinement));
+            const std::size_t count = chunks > 1 ? std::min(fitting, left) : left;
+            VSPLIT_TRY(add_splits(bits, batch, *plan, static_cast<std::uint32_t>(count)));
+            ByteWriter chunk;
+            bits.finish(chunk);
+            if (count >= kTellingSplits)
+            {
+                // Refinement bits are left out: the next level has hardly any.
+                const std::size_t bytes = chunk.size() - std::min(chunk.size(), refinement);
+                bytes_per_split_ =
+                    std::max(0.25, static_cast<double>(bytes) / static_cast<double>(count));
+            }
+            left -= count;
+            add_chunk(proto::ChunkKind::Batch, chunk.view(), chunks == 1 ? &level : nullptr);
+        }
+        state_.mesh.finish_batch();
         return {};
     }
 
-    Result<void> add_batch(
+    Result<void> add_splits(
         BitEncoder& bits,
-        const PlannedLevel& level,
+        std::span<const Collapse> batch,
         const SplitPlan& plan,
-        std::uint32_t count,
-        bool ends_level
+        std::uint32_t count
     )
     {
         VSPLIT_TRY(code_connectivity(bits, state_, count, &plan));
@@ -242,7 +279,7 @@ private:
         std::vector<FitSample> samples;
         for (const Split& split : state_.splits)
         {
-            const std::uint32_t removed = level.collapses[split.source].removed;
+            const std::uint32_t removed = batch[split.source].removed;
             positions.push_back(on_grid(removed, state_.shift));
             place_vertex(removed);
             if (split.kind == SplitKind::Interior)
@@ -256,21 +293,27 @@ private:
         code_weights(bits, state_, fitted.has_value(), fitted.value_or(state_.weights));
         VSPLIT_TRY(code_positions(bits, state_, positions));
         state_.mesh.apply(state_.splits, nullptr);
-        ByteWriter chunk;
-        bits.finish(chunk);
-        adapt_chunk_size(chunk.size(), count);
-        add_chunk(proto::ChunkKind::Batch, chunk.view(), ends_level ? &level : nullptr);
         return {};
     }
 
-    /// Chooses how many splits the next chunk may hold, from what they cost in this one.
-    void adapt_chunk_size(std::size_t bytes, std::uint32_t count)
+    /// Chunks to cut a level into: each may grow the file by a twelfth, so that prefixes come in fine
+    /// steps, but is not so small that its own bytes count, nor larger than the target.
+    std::size_t chunk_count(std::size_t splits, std::size_t refinement) const
     {
-        if (count >= 256)
-        {
-            const std::size_t fitting = proto::kTargetChunkBytes * 9ULL / 10ULL * count / bytes;
-            chunk_splits_ = std::max<std::size_t>(fitting, 256);
-        }
+        const std::size_t most = std::clamp<std::size_t>(
+            payload_.size() / 12, kSmallestChunkBytes, proto::kTargetChunkBytes * 9ULL / 10
+        );
+        return std::max<std::size_t>((split_bytes(splits) + refinement) / most, 1);
+    }
+
+    std::size_t split_bytes(std::size_t splits) const
+    {
+        return static_cast<std::size_t>(static_cast<double>(splits) * bytes_per_split_);
+    }
+
+    std::size_t split_count(std::size_t bytes) const
+    {
+        return static_cast<std::size_t>(static_cast<double>(bytes) / bytes_per_split_);
     }
 
     void add_stitches()
@@ -326,7 +369,7 @@ private:
     std::vector<std::array<std::int32_t, 3>> full_;  ///< Positions by vertex of the stream.
     std::vector<ChunkInfo> chunks_;
     ByteWriter payload_;
-    std::size_t chunk_splits_ = kFirstChunkSplits;
+    double bytes_per_split_ = 2.5;
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "codec/batch_coder.h"
 #include "codec/refinement_mesh.h"
 #include "codec/stream_info.h"
 #include "core/result.h"
@@ -24,13 +25,15 @@ struct Collapse
     SplitKind kind = SplitKind::Interior;
 };
 
-/// One level of the plan: the collapses that its batch undoes, and how it looks when shown.
+/// One level of the plan: the collapses that its batches undo, and how it looks when shown.
 struct PlannedLevel
 {
-    std::vector<Collapse> collapses;  ///< Faces of their stars are disjoint. Empty for the base.
-    int shift = 0;                    ///< Precision of the level; never grows from level to level.
-    double rms_error = 0.0;           ///< Model units.
-    double max_error = 0.0;           ///< Model units.
+    /// Batches of collapses, coarsest first; within a batch the faces of their stars are disjoint. One
+    /// batch, or up to kMaxBatches small ones that share a chunk. Empty for the base.
+    std::vector<std::vector<Collapse>> batches;
+    int shift = 0;           ///< Precision of the level; never grows from level to level.
+    double rms_error = 0.0;  ///< Model units.
+    double max_error = 0.0;  ///< Model units.
 };
 
 /// All that a stream is made of.

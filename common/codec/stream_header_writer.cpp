@@ -4,7 +4,8 @@
 #include "core/byte_writer.h"
 #include "core/crc32c.h"
 
-#include <cmath>
+#include <algorithm>
+#include <bit>
 
 namespace vsplit::codec {
 namespace {
@@ -31,22 +32,25 @@ public:
 
     void write(const ChunkInfo& chunk)
     {
-        out_.write_varint(std::uint64_t{chunk.bytes} * 2 + (chunk.ends_level ? 0 : 1));
-        out_.write(chunk.checksum);
+        const bool base = chunk.kind == proto::ChunkKind::Base;
+        const std::uint32_t splits = chunk.vertices - vertices_;
+        const std::uint32_t boundary = 2 * splits - (chunk.faces - faces_);
+        out_.write_varint(
+            std::uint64_t{chunk.bytes} * 4 + (chunk.ends_level ? 0 : proto::kRowContinuesLevel) +
+            (!base && boundary != 0 ? proto::kRowHasBoundary : 0)
+        );
         if (static_cast<std::uint8_t>(chunk.kind) >= proto::kFirstOptionalChunkKind)
         {
             return;
         }
-        if (chunk.kind == proto::ChunkKind::Base)
+        out_.write_varint(splits);
+        if (base)
         {
-            out_.write_varint(chunk.vertices);
             out_.write_varint(chunk.faces);
         }
-        else
+        else if (boundary != 0)
         {
-            const std::uint32_t splits = chunk.vertices - vertices_;
-            out_.write_varint(splits);
-            out_.write_varint(2ULL * splits - (chunk.faces - faces_));
+            out_.write_varint(boundary);
         }
         vertices_ = chunk.vertices;
         faces_ = chunk.faces;
@@ -72,6 +76,14 @@ private:
     std::uint32_t rms_code_ = 0;
     std::uint32_t max_code_ = 0;
 };
+
+bool fits_single_precision(const QuantizationGrid& grid)
+{
+    const auto fits = [](double number) {
+        return static_cast<double>(static_cast<float>(number)) == number;
+    };
+    return std::ranges::all_of(grid.origin, fits) && fits(grid.cell);
+}
 
 void write_index(ByteWriter& out, const StreamInfo& info, double diagonal)
 {
@@ -103,12 +115,22 @@ std::vector<std::byte> write_stream_header(
 )
 {
     ByteWriter body;
-    body.write(static_cast<std::uint8_t>(info.grid.bits));
-    for (const double coordinate : info.grid.origin)
+    const bool single = fits_single_precision(info.grid);
+    body.write(
+        static_cast<std::uint8_t>(info.grid.bits + (single ? proto::kSinglePrecisionGrid : 0))
+    );
+    for (const double number :
+         {info.grid.origin[0], info.grid.origin[1], info.grid.origin[2], info.grid.cell})
     {
-        body.write_f64(coordinate);
+        if (single)
+        {
+            body.write(std::bit_cast<std::uint32_t>(static_cast<float>(number)));
+        }
+        else
+        {
+            body.write_f64(number);
+        }
     }
-    body.write_f64(info.grid.cell);
     for (const std::int32_t index : extent)
     {
         body.write_varint(static_cast<std::uint64_t>(index));

@@ -30,8 +30,7 @@ struct ChunkInfo
     std::uint8_t codec = 0;      ///< Codec of this kind; 0 is the only one of version 0.
     bool ends_level = true;      ///< True when the mesh reaches the next level after it.
     std::uint64_t offset = 0;    ///< First byte in the file.
-    std::uint32_t bytes = 0;     ///< Length.
-    std::uint32_t checksum = 0;  ///< CRC-32C of the bytes.
+    std::uint32_t bytes = 0;     ///< Length, the checksum at its end included.
     std::uint32_t vertices = 0;  ///< Vertices of the mesh after it.
     std::uint32_t faces = 0;     ///< Triangles of the mesh after it.
     double rms_error = 0.0;      ///< RMS surface distance to the source after it, model units.
@@ -99,6 +98,13 @@ struct StopCondition
 /// Source: proto/STREAM_FORMAT.md, "Header" and "Index".
 [[nodiscard]] Result<StreamInfo> parse_stream_info(
     std::span<const std::byte> prefix, const DecodeLimits& limits = {}
+);
+
+/// Checks a chunk against the CRC-32C at its end.
+/// `bytes`: the whole chunk; `offset`: its place in the file, for the error.
+/// Result: the chunk without its checksum. Errors: BadChecksum. Safe on untrusted input.
+[[nodiscard]] Result<std::span<const std::byte>> chunk_contents(
+    std::span<const std::byte> bytes, std::uint64_t offset
 );
 
 /// Returns the length of the file prefix to read for a stop condition: a chunk boundary, at least

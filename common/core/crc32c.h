@@ -12,4 +12,7 @@ namespace vsplit {
 /// Source: RFC 3720, appendix B.4.
 [[nodiscard]] std::uint32_t crc32c(std::span<const std::byte> bytes, std::uint32_t previous = 0);
 
+/// What crc32c() gives for any bytes followed by their own checksum in little-endian order.
+inline constexpr std::uint32_t kCrc32cResidue = 0x48674BC7;
+
 }  // namespace vsplit

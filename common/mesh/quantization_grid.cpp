@@ -4,8 +4,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace vsplit {
+
+namespace {
+
+/// The least binary32 that is not below a positive number, if there is one.
+double round_up_to_single(double number)
+{
+    const auto single = static_cast<float>(number);
+    const float up = static_cast<double>(single) < number
+                         ? std::nextafter(single, std::numeric_limits<float>::infinity())
+                         : single;
+    return std::isfinite(up) && up > 0.0F ? static_cast<double>(up) : number;
+}
+
+}  // namespace
 
 QuantizationGrid make_grid(std::span<const std::array<double, 3>> positions, int bits)
 {
@@ -25,7 +40,7 @@ QuantizationGrid make_grid(std::span<const std::array<double, 3>> positions, int
     const double cell = extent / grid.max_index();
     if (cell > 0.0 && std::isfinite(cell))
     {
-        grid.cell = cell;
+        grid.cell = round_up_to_single(cell);
     }
     return grid;
 }

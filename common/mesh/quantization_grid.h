@@ -21,7 +21,8 @@ struct QuantizationGrid
 
 /// Builds the grid whose 2^bits - 1 cells span the largest extent of the bounding box.
 /// `positions`: V points, model units, all finite, V > 0; `bits`: 8 .. 20.
-/// A single point (or coincident points) gives a cell of 1.
+/// The cell is rounded up to a binary32, which headers store in half the space. A single point (or
+/// coincident points) gives a cell of 1.
 [[nodiscard]] QuantizationGrid make_grid(
     std::span<const std::array<double, 3>> positions, int bits
 );

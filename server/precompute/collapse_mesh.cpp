@@ -3,14 +3,9 @@
 #include "precompute/collapse_mesh.h"
 
 #include <algorithm>
+#include <array>
 
 namespace vsplit::precompute {
-namespace {
-
-constexpr int kMostValence = 250;
-
-}  // namespace
-
 CollapseMesh::CollapseMesh(std::uint32_t vertex_count, std::span<const Triangle> triangles)
     : vertex_(triangles.size() * 3),
       opposite_(triangles.size() * 3, -1),
@@ -27,9 +22,8 @@ CollapseMesh::CollapseMesh(std::uint32_t vertex_count, std::span<const Triangle>
     link_opposites();
     for (std::int32_t c = 0; c < static_cast<std::int32_t>(vertex_.size()); ++c)
     {
-        std::uint8_t& valence = valence_[vertex(c)];
         const bool last = opposite(previous(c)) < 0;
-        valence = static_cast<std::uint8_t>(std::min(kMostValence, valence + (last ? 2 : 1)));
+        valence_[vertex(c)] += last ? 2 : 1;
         if (last)
         {
             boundary_[vertex(c)] = 1;
@@ -104,13 +98,14 @@ bool CollapseMesh::ring(std::uint32_t center, OneRing& ring) const
 }
 
 bool CollapseMesh::can_collapse(
-    std::uint32_t removed, const OneRing& ring, std::size_t kept, int valence_limit
+    std::uint32_t removed, const OneRing& ring, std::size_t kept, std::uint32_t valence_limit
 ) const
 {
     const std::size_t degree = ring.size;
     const std::uint32_t target = ring.vertex[kept];
-    const auto least = [this](std::uint32_t v) { return boundary_[v] != 0 ? 2 : 3; };
-    const int after = valence_[target] + static_cast<int>(degree) - (ring.boundary ? 3 : 4);
+    const auto least = [this](std::uint32_t v) { return boundary_[v] != 0 ? 2U : 3U; };
+    const auto gained = static_cast<std::uint32_t>(degree) - (ring.boundary ? 3U : 4U);
+    const std::uint32_t after = valence_[target] + gained;
     if (after > valence_limit || after < least(target))
     {
         return false;
@@ -126,7 +121,7 @@ bool CollapseMesh::can_collapse(
     for (const std::size_t loser : losers)
     {
         const std::uint32_t v = ring.vertex[loser];
-        if (valence_[v] - 1 < least(v))
+        if (valence_[v] <= least(v))
         {
             return false;
         }
@@ -216,8 +211,7 @@ void CollapseMesh::collapse(std::uint32_t removed, const OneRing& ring, std::siz
         corner_of_[ring.vertex[i]] = next(corner);
         corner_of_[ring.vertex[(i + 1) % degree]] = previous(corner);
     }
-    valence_[target] =
-        static_cast<std::uint8_t>(valence_[target] + degree - (ring.boundary ? 3 : 4));
+    valence_[target] += static_cast<std::uint32_t>(degree) - (ring.boundary ? 3U : 4U);
     corner_of_[removed] = -1;
 }
 

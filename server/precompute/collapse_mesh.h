@@ -72,15 +72,15 @@ public:
     /// Source: Dey, Edelsbrunner, Guha, Nekhayev, "Topology Preserving Edge Contraction", 1999 (link
     /// condition).
     [[nodiscard]] bool can_collapse(
-        std::uint32_t removed, const OneRing& ring, std::size_t kept, int valence_limit
+        std::uint32_t removed, const OneRing& ring, std::size_t kept, std::uint32_t valence_limit
     ) const;
 
     [[nodiscard]] bool is_boundary(std::uint32_t vertex) const { return boundary_[vertex] != 0; }
 
     [[nodiscard]] bool is_removed(std::uint32_t vertex) const { return corner_of_[vertex] < 0; }
 
-    /// Neighbours of a vertex; 250 stands for 250 or more.
-    [[nodiscard]] int valence(std::uint32_t vertex) const { return valence_[vertex]; }
+    /// Neighbours of a vertex.
+    [[nodiscard]] std::uint32_t valence(std::uint32_t vertex) const { return valence_[vertex]; }
 
     /// Face across the edge opposite to a corner, or -1.
     [[nodiscard]] std::int32_t face_across(std::int32_t corner) const
@@ -131,7 +131,7 @@ private:
     std::vector<std::int32_t> vertex_;     ///< By corner; -1 in removed faces.
     std::vector<std::int32_t> opposite_;   ///< By corner; -1 at the boundary.
     std::vector<std::int32_t> corner_of_;  ///< By vertex one of its corners; -1 when removed.
-    std::vector<std::uint8_t> valence_;
+    std::vector<std::uint32_t> valence_;
     std::vector<std::uint8_t> boundary_;
 };
 

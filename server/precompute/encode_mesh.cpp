@@ -31,13 +31,20 @@ constexpr std::uint32_t kDefaultBaseVertices = 64;
 
 /// Share of the vertices down to which levels are built for small files rather than for low error: the
 /// finest levels hold most of the vertices and hardly touch the picture at low rates.
-constexpr double kRegularShare = 0.35;
+constexpr double kRegularShare = 0.45;
+
+/// Share of the vertices that a level below those removes: smaller follows the surface better, larger
+/// costs less.
+constexpr double kCoarseShare = 0.2;
 
 /// Levels that make less progress than this end the sequence.
 constexpr double kLeastShare = 0.02;
 
-/// Small levels are made at least so large, because each costs about twenty bytes of its own.
+/// Vertices that a batch removes at least, as far as there are so many.
 constexpr std::size_t kSmallestBatch = 16;
+
+/// Splits that a level has at most when it joins several batches.
+constexpr std::size_t kSmallestLevel = 120;
 
 bool is_curvature(Metric metric)
 {
@@ -59,16 +66,16 @@ LevelStyle style_for(Metric metric, std::size_t vertices, std::size_t all)
             .largest_share = 1.0,
         };
     }
-    LevelStyle style{.cost_weight = 1.0, .largest_share = 0.18};
+    LevelStyle style{.largest_share = kCoarseShare};
     const double smallest = static_cast<double>(kSmallestBatch) / static_cast<double>(vertices);
     style.largest_share = std::max(style.largest_share, smallest);
     return style;
 }
 
-/// The collapse sequence: levels finest first, and the triangles before each and after all of them.
+/// The collapse sequence: levels of batches, and the triangles of the base and of each level.
 struct Sequence
 {
-    std::vector<std::vector<codec::Collapse>> levels;
+    std::vector<std::vector<std::vector<codec::Collapse>>> levels;
     std::vector<std::vector<Triangle>> triangles;
 };
 
@@ -110,7 +117,7 @@ Sequence make_sequence(
         }
         const bool slow =
             static_cast<double>(level.size()) < kLeastShare * static_cast<double>(before);
-        sequence.levels.push_back(std::move(level));
+        sequence.levels.push_back({std::move(level)});
         sequence.triangles.push_back(working.triangles());
         if (progress)
         {
@@ -122,6 +129,32 @@ Sequence make_sequence(
         }
     }
     return sequence;
+}
+
+/// Turns a sequence round, coarsest first, and joins small batches into one level until it is worth
+/// its own chunk.
+void order_levels(Sequence& sequence)
+{
+    std::ranges::reverse(sequence.levels);
+    std::ranges::reverse(sequence.triangles);
+    Sequence joined;
+    joined.triangles.push_back(std::move(sequence.triangles.front()));
+    std::size_t splits = kSmallestLevel;
+    for (std::size_t i = 0; i < sequence.levels.size(); ++i)
+    {
+        auto& batch = sequence.levels[i].front();
+        if (splits + batch.size() > kSmallestLevel ||
+            joined.levels.back().size() == codec::kMaxBatches)
+        {
+            splits = 0;
+            joined.levels.emplace_back();
+            joined.triangles.emplace_back();
+        }
+        splits += batch.size();
+        joined.levels.back().push_back(std::move(batch));
+        joined.triangles.back() = std::move(sequence.triangles[i + 1]);
+    }
+    sequence = std::move(joined);
 }
 
 codec::StreamPlan make_plan(
@@ -142,7 +175,7 @@ codec::StreamPlan make_plan(
         codec::PlannedLevel planned;
         if (level > 0)
         {
-            planned.collapses = std::move(sequence.levels[level - 1]);
+            planned.batches = std::move(sequence.levels[level - 1]);
         }
         planned.shift = errors[level].shift;
         planned.rms_error = errors[level].distance.rms * grid.cell;
@@ -186,8 +219,7 @@ Result<EncodedMesh> encode_mesh(
     Sequence sequence = make_sequence(mesh, exact, stitches, std::move(weights), options, progress);
     result.seconds.collapse = lap(start);
 
-    std::ranges::reverse(sequence.levels);
-    std::ranges::reverse(sequence.triangles);
+    order_levels(sequence);
     const auto errors = measure_levels(
         exact,
         quantised,

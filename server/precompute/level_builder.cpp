@@ -16,11 +16,12 @@ constexpr float kSettled = std::numeric_limits<float>::infinity();
 /// No face may turn by more than this (cosine).
 constexpr double kLeastCosine = 0.25;
 
-/// Quality below which a new triangle counts as a sliver; 1 is equilateral.
-constexpr double kLeastQuality = 0.02;
+/// Quality below which a new triangle counts as degenerate; 1 is equilateral. Long thin triangles must
+/// pass: flat parts of CAD models consist of them, and refusing them leaves large base meshes.
+constexpr double kLeastQuality = 1e-4;
 
 /// Neighbours that a kept vertex may come to have.
-constexpr int kValenceLimit = 12;
+constexpr std::uint32_t kValenceLimit = 12;
 
 /// Least quality, 0 .. 1, over the triangles that a collapse changes; negative when one flips or
 /// degenerates.
@@ -73,7 +74,7 @@ LevelBuilder::LevelBuilder(
 
 void LevelBuilder::collect_vertex(std::uint32_t vertex, const LevelStyle& style)
 {
-    constexpr int kMostNeighbours = codec::kMaxWedge + 2;
+    constexpr std::uint32_t kMostNeighbours = codec::kMaxWedge + 2;
     OneRing ring;
     if (mesh_.valence(vertex) > kMostNeighbours || mesh_.valence(vertex) < 3 ||
         (!locked_.empty() && locked_[vertex] != 0) || !mesh_.ring(vertex, ring))

@@ -41,7 +41,6 @@ Json chunks_json(const codec::StreamInfo& info)
             {"codec", chunk.codec},
             {"offset", chunk.offset},
             {"bytes", chunk.bytes},
-            {"checksum", chunk.checksum},
             {"vertices", chunk.vertices},
             {"faces", chunk.faces},
             {"ends_level", chunk.ends_level},
