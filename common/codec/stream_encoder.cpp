@@ -347,6 +347,7 @@ private:
         info.vertex_count = state_.mesh.vertex_count();
         info.face_count = state_.mesh.face_count();
         info.chunks = std::move(chunks_);
+        info.content_checksum = crc32c(payload_.view());
         std::array<std::int32_t, 3> extent{};
         for (const auto& position : plan_.mesh->positions)
         {

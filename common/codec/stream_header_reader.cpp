@@ -355,6 +355,9 @@ Result<StreamInfo> parse_stream_info(std::span<const std::byte> prefix, const De
     {
         return fail(ErrorCode::LimitExceeded, "the mesh is larger than the limit allows");
     }
+    const auto content_checksum = reader.read<std::uint32_t>();
+    VSPLIT_TRY(content_checksum);
+    info.content_checksum = *content_checksum;
     VSPLIT_TRY(skip_attributes(reader));
     VSPLIT_TRY(read_index(reader, info, limits));
     if (reader.remaining() != 0)

@@ -137,6 +137,7 @@ std::vector<std::byte> write_stream_header(
     }
     body.write_varint(info.vertex_count);
     body.write_varint(info.face_count);
+    body.write(info.content_checksum);
     body.write_varint(0);  // No attributes in version 0.
     write_index(body, info, stored_diagonal(info, extent));
 

@@ -1,6 +1,7 @@
 #include "net/test_streams.h"
 
 #include "codec/stream_header_writer.h"
+#include "core/byte_writer.h"
 #include "core/crc32c.h"
 #include "core/file_io.h"
 
@@ -59,11 +60,14 @@ Bytes make_stream_file(const std::vector<std::uint32_t>& chunk_bytes, unsigned s
     double error = 1.0;
     for (const std::uint32_t count : chunk_bytes)
     {
-        const Bytes bytes = noise(count, random);
+        // Noise that ends in its checksum, as a chunk does; `count` bytes of noise besides.
+        Bytes bytes = noise(count, random);
+        ByteWriter checksum;
+        checksum.write(crc32c(bytes));
+        bytes.insert(bytes.end(), checksum.view().begin(), checksum.view().end());
         info.chunks.push_back(codec::ChunkInfo{
             .kind = info.chunks.empty() ? proto::ChunkKind::Base : proto::ChunkKind::Batch,
-            .bytes = count,
-            .checksum = crc32c(bytes),
+            .bytes = static_cast<std::uint32_t>(bytes.size()),
             .vertices = vertices,
             .faces = faces,
             .rms_error = error,
@@ -76,6 +80,7 @@ Bytes make_stream_file(const std::vector<std::uint32_t>& chunk_bytes, unsigned s
         error /= 2.0;
         chunks.insert(chunks.end(), bytes.begin(), bytes.end());
     }
+    info.content_checksum = crc32c(chunks);
     return joined(codec::write_stream_header(info, {100, 200, 300}), chunks);
 }
 
