@@ -20,7 +20,10 @@ Result<IndexedMesh> read_text(
     {
         return fail(ErrorCode::NotAMesh, "it holds binary data, not text");
     }
-    return reader(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+    std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+    text.remove_prefix(text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0);
+    return reader(text);
 }
 
 Result<IndexedMesh> parse(const std::string& extension, std::span<const std::byte> bytes)

@@ -59,11 +59,19 @@ private:
         std::size_t reversed = 0;
         result_.reversed[seed] = kKept;
         order_.push_back(seed);
-        for (std::size_t i = begin; i < order_.size(); ++i)
+        std::size_t next = begin;
+        std::size_t next_deferred = 0;
+        while (next < order_.size() || next_deferred < deferred_.size())
         {
-            reversed += result_.reversed[order_[i]] == kReversed ? 1 : 0;
-            visit_neighbours(order_[i]);
+            if (next < order_.size())
+            {
+                reversed += result_.reversed[order_[next]] == kReversed ? 1 : 0;
+                visit_neighbours(order_[next++]);
+                continue;
+            }
+            reach_across(deferred_[next_deferred++]);
         }
+        deferred_.clear();
         const std::size_t size = order_.size() - begin;
         if (2 * reversed > size)
         {
@@ -85,23 +93,46 @@ private:
             {
                 continue;
             }
-            const bool agree = start_of(half) != start_of(other);
-            const auto wanted =
-                static_cast<std::uint8_t>(result_.reversed[face] ^ (agree ? 0U : 1U));
-            std::uint8_t& state = result_.reversed[other / 3];
-            if (state == kUnvisited)
+            if (agree(half, other))
             {
-                state = wanted;
-                order_.push_back(other / 3);
+                reach_across(half);
             }
-            else if (state != wanted)
+            else
             {
-                // Not orientable: the surface is one-sided along this edge.
-                result_.opposite[half] = kNoHalfEdge;
-                result_.opposite[other] = kNoHalfEdge;
-                ++report_.non_manifold_edges;
+                // Later: a one-sided surface is then cut where its faces disagree already.
+                deferred_.push_back(half);
             }
         }
+    }
+
+    void reach_across(HalfEdge half)
+    {
+        const HalfEdge other = result_.opposite[half];
+        if (other == kNoHalfEdge)
+        {
+            return;  // cut meanwhile
+        }
+        const unsigned turn = agree(half, other) ? 0U : 1U;
+        const auto wanted = static_cast<std::uint8_t>(result_.reversed[half / 3] ^ turn);
+        std::uint8_t& state = result_.reversed[other / 3];
+        if (state == kUnvisited)
+        {
+            state = wanted;
+            order_.push_back(other / 3);
+        }
+        else if (state != wanted)
+        {
+            // Not orientable: the surface is one-sided along this edge.
+            result_.opposite[half] = kNoHalfEdge;
+            result_.opposite[other] = kNoHalfEdge;
+            ++report_.non_manifold_edges;
+        }
+    }
+
+    /// True when both faces of an edge turn the same way: they run along it in opposite directions.
+    [[nodiscard]] bool agree(HalfEdge half, HalfEdge other) const
+    {
+        return start_of(half) != start_of(other);
     }
 
     [[nodiscard]] std::uint32_t start_of(HalfEdge half) const
@@ -113,6 +144,7 @@ private:
     RepairReport& report_;
     Orientation result_;
     std::vector<std::uint32_t> order_;  ///< Faces as they were reached.
+    std::vector<HalfEdge> deferred_;    ///< Edges of the component whose faces disagree.
 };
 
 }  // namespace

@@ -30,16 +30,20 @@ std::optional<std::string_view> LineReader::next()
     {
         return std::nullopt;
     }
-    const std::size_t end = text_.find('\n', offset_);
-    const std::size_t length = (end == std::string_view::npos ? text_.size() : end) - offset_;
-    std::string_view line = text_.substr(offset_, length);
-    offset_ += length + (end == std::string_view::npos ? 0 : 1);
-    ++line_number_;
-    if (!line.empty() && line.back() == '\r')
+    if (newline_ < offset_ || offset_ == 0)
     {
-        line.remove_suffix(1);
+        newline_ = std::min(text_.find('\n', offset_), text_.size());
     }
-    return line;
+    const std::string_view line = text_.substr(offset_, newline_ - offset_);
+    const std::size_t length = std::min(line.find('\r'), line.size());
+    offset_ += length + 1;
+    if (length < line.size() && offset_ == newline_)
+    {
+        ++offset_;  // "\r\n" is one end
+    }
+    offset_ = std::min(offset_, text_.size());
+    ++line_number_;
+    return line.substr(0, length);
 }
 
 std::string_view take_token(std::string_view& text)

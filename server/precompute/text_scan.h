@@ -8,7 +8,7 @@
 
 namespace vsplit::precompute {
 
-/// Walks over the lines of a text. Lines end at "\n" or "\r\n". Not thread safe. Safe on untrusted
+/// Walks over the lines of a text. Lines end at "\n", "\r\n" or "\r". Not thread safe. Safe on untrusted
 /// input.
 class LineReader
 {
@@ -28,6 +28,8 @@ public:
 private:
     std::string_view text_;
     std::size_t offset_ = 0;
+    std::size_t newline_ =
+        0;  ///< First "\n" from offset_ on, kept so that it is searched for once.
     std::size_t line_number_ = 0;
 };
 

@@ -183,6 +183,25 @@ TEST_F(MeshReader, ReadsBinaryStlEvenWhenItStartsWithSolid)
     EXPECT_THAT(mesh->triangles, ElementsAre(Triangle{0, 1, 2}));
 }
 
+TEST_F(MeshReader, ReadsEveryKindOfLineEndAndAByteOrderMark)
+{
+    for (const std::string end : {"\n", "\r\n", "\r"})
+    {
+        const std::string text =
+            "\xEF\xBB\xBFv 0 0 0" + end + "v 1 0 0" + end + end + "v 0 1 0" + end + "f 1 2 3";
+        for (const std::string& contents : {text, text + end})
+        {
+            const auto mesh = read("a.obj", contents);
+            ASSERT_TRUE(mesh) << mesh.error().message;
+            EXPECT_EQ(mesh->positions.size(), 3U);
+            EXPECT_THAT(mesh->triangles, ElementsAre(Triangle{0, 1, 2}));
+        }
+        const auto bad = read("a.obj", "v 0 0 0" + end + end + "v 1 0" + end + "f 1 1 1" + end);
+        ASSERT_FALSE(bad);
+        EXPECT_THAT(bad.error().message, ::testing::HasSubstr("line 3"));
+    }
+}
+
 TEST_F(MeshReader, TakesNumbersTooSmallForADoubleAsZero)
 {
     const auto mesh = read("a.obj", "v 1e-400 0 0\nv 1 0 0\nv 0 1 -2.5e-9999\nf 1 2 3\n");

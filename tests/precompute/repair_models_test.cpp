@@ -87,7 +87,8 @@ TEST_F(RepairModels, ReportsKnownDefects)
     EXPECT_GE(chair.report.degenerate_faces, 16U);
 
     const auto moebius = repaired_model("moebius.ply");
-    EXPECT_GT(moebius.report.non_manifold_edges, 0U);
+    EXPECT_EQ(moebius.report.non_manifold_edges, 4U);
+    EXPECT_EQ(moebius.report.flipped_faces, 0U);
     EXPECT_EQ(moebius.components, 1U);
 
     const auto beetle = repaired_model("beetle.obj");

@@ -210,6 +210,7 @@ TEST(Repair, CutsAMoebiusStripOpenOnce)
 {
     EXPECT_TRUE(repaired(ring(12, false)).report.clean());
     const RepairedMesh result = repaired(ring(12, true));
+    EXPECT_EQ(result.report.flipped_faces, 0U) << "cut where the faces disagree already";
     EXPECT_EQ(result.report.non_manifold_edges, 1U);
     EXPECT_EQ(result.report.added_vertices, 2U);
     EXPECT_EQ(result.mesh.triangles.size(), 24U);
