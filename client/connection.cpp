@@ -239,11 +239,12 @@ private:
             }
             shaper_.consume(count);
             wire_bytes_ += count;
-            auto taken = transfer_.take(
-                std::span(input_).first(count),
-                [this](std::span<const std::byte> piece) { queue_.push(piece); }
-            );
-            payload_bytes_ = transfer_.received();
+            // Counted before it is handed over: who has taken the last byte sees the right sum.
+            const auto hand_over = [this](std::span<const std::byte> piece) {
+                payload_bytes_ += piece.size();
+                queue_.push(piece);
+            };
+            auto taken = transfer_.take(std::span(input_).first(count), hand_over);
             if (!taken)
             {
                 co_return taken;

@@ -1,5 +1,6 @@
 #include "display.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <numbers>
@@ -12,6 +13,29 @@ namespace {
 
 constexpr double kTurnPerFrame = 2.0 * std::numbers::pi / 180.0;
 constexpr double kPictureAngle = -0.7;
+
+// Draws one triangle, so that the driver compiles its programs before the clock starts, as a device
+// does when the application is installed.
+Result<void> warm_up(Renderer& renderer)
+{
+    constexpr std::array<float, 9> kPoints{0, 0, 0, 1, 0, 0, 0, 1, 0};
+    const std::array<codec::TriangleUpdate, 1> triangle{{{0, {0, 1, 2}}}};
+    codec::Step step;
+    step.kind = codec::StepKind::Chunk;
+    step.vertices = 3;
+    step.faces = 1;
+    step.triangles = triangle;
+    GpuBuffers buffers(1.0);
+    buffers.apply(step, [&](std::uint32_t first, std::uint32_t count, std::span<float> out) {
+        std::copy_n(kPoints.begin() + 3 * first, 3 * count, out.begin());
+    });
+    VSPLIT_TRY(renderer.reserve(step.vertices, step.faces));
+    renderer.upload(buffers);
+    const View view = Turntable({0, 0, 0}, {1, 1, 1}, 1.0).view(0.0);
+    renderer.draw(view);
+    VSPLIT_TRY(renderer.picture(view));
+    return {};
+}
 
 }  // namespace
 
@@ -40,6 +64,7 @@ Result<std::unique_ptr<Display>> Display::create(const Options& options)
     auto renderer =
         Renderer::create({options.device.width, options.device.height, options.wireframe});
     VSPLIT_TRY(renderer);
+    VSPLIT_TRY(warm_up(**renderer));
     return std::unique_ptr<Display>(new Display(options, std::move(*renderer)));
 }
 

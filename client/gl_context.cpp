@@ -72,16 +72,12 @@ Result<std::unique_ptr<GlContext>> GlContext::create()
 
 GlContext::~GlContext()
 {
-    if (display_ == nullptr)
-    {
-        return;
-    }
-    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    // The display belongs to the process: terminating it would end every other context of it too.
     if (context_ != nullptr)
     {
+        eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
         eglDestroyContext(display_, context_);
     }
-    eglTerminate(display_);
 }
 
 }  // namespace vsplit::client

@@ -13,6 +13,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kLongestWait{100};
+constexpr milliseconds kGoodbyeWait{2000};
 constexpr std::chrono::duration<double> kLeastDecodeBudget{0.001};
 constexpr std::size_t kBlockBytes = 16384;
 // While bytes are on their way the model keeps turning; on a very slow link not for ever.
@@ -84,8 +85,12 @@ Result<void> Player::run()
     }
     start_ = Clock::now();
     connection_ = std::make_unique<Connection>(connection_options(options_));
-    auto outcome = play();
+    const auto outcome = play();
     report_.seconds = elapsed();
+    if (outcome)
+    {
+        await_goodbye();
+    }
     report_.transferred = connection_->counters();
     print_last_row();
     VSPLIT_TRY(outcome);
@@ -307,6 +312,19 @@ Result<void> Player::finish()
     out_.flush();
     return options_.save.empty() ? Result<void>{}
                                  : write_ply(options_.save, codec::extract_mesh(decoder));
+}
+
+// The server's last words follow the last byte; they belong to the bytes on the wire. What else
+// comes is not needed: a stop that was moved forward lets a little more through.
+void Player::await_goodbye()
+{
+    const auto deadline = Clock::now() + kGoodbyeWait;
+    ByteQueue& bytes = connection_->bytes();
+    while (!bytes.drained() && Clock::now() < deadline)
+    {
+        bytes.wait(kLongestWait);
+        bytes.pop(block_);
+    }
 }
 
 void Player::draw_frame()

@@ -42,6 +42,7 @@ private:
     [[nodiscard]] Result<void> wait_or_draw();
     [[nodiscard]] Result<void> accept_end_of_transfer();
     [[nodiscard]] Result<void> finish();
+    void await_goodbye();
     void draw_frame();
     void print_last_row();
     [[nodiscard]] double elapsed() const;

@@ -54,7 +54,7 @@ float line_opacity(const RenderOptions& options, std::uint32_t faces)
 {
     const double area = 0.5 * options.width * options.height;
     const double edge = std::sqrt(area / std::max(1.0, faces / 4.0));
-    return static_cast<float>(std::clamp((edge - 1.0) / 6.0, 0.12, 0.85));
+    return static_cast<float>(std::clamp((edge - 1.0) / 10.0, 0.10, 0.85));
 }
 
 }  // namespace

@@ -21,7 +21,8 @@ struct RenderOptions
 };
 
 /// Draws the refining mesh off screen with OpenGL ES 3. Vertex and index memory on the GPU is
-/// allocated once; afterwards only changed ranges are uploaded. Use on one thread.
+/// allocated once; afterwards only changed ranges are uploaded. Use on one thread, one at a time: its
+/// context is current while it lives.
 class Renderer
 {
 public:

@@ -183,10 +183,8 @@ TEST_F(RendererTest, DrawsOnlyTheTrianglesThatWereUploaded)
 
 TEST_F(RendererTest, DrawsEdgesInTheGridDisplay)
 {
-    const auto plain = make_renderer(false);
-    const Image surface = picture_of_cube(*plain, 12);
-    const auto grid = make_renderer(true);
-    const Image lines = picture_of_cube(*grid, 12);
+    const Image surface = picture_of_cube(*make_renderer(false), 12);
+    const Image lines = picture_of_cube(*make_renderer(true), 12);
     const std::size_t changed = different_pixels(surface, lines);
     EXPECT_GT(changed, 150U);
     EXPECT_LT(changed, kWidth * kHeight / 4);
