@@ -1,6 +1,5 @@
 #include "memory_plan.h"
 
-#include "core/assert.h"
 #include "gpu_buffers.h"
 
 #include <algorithm>
@@ -17,21 +16,6 @@ std::uint64_t needed_bytes(const codec::StreamInfo& prefix, const MemoryUse& use
 
 }  // namespace
 
-codec::StreamInfo prefix_info(const codec::StreamInfo& info, std::uint32_t level)
-{
-    VSPLIT_ASSERT(level < info.levels.size());
-    codec::StreamInfo prefix = info;
-    prefix.levels.resize(std::size_t{level} + 1);
-    const codec::LevelInfo& last = prefix.levels.back();
-    prefix.vertex_count = last.vertices;
-    prefix.face_count = last.faces;
-    prefix.file_bytes = last.cumulative_bytes;
-    std::erase_if(prefix.chunks, [&](const codec::ChunkInfo& chunk) {
-        return chunk.offset >= last.cumulative_bytes;
-    });
-    return prefix;
-}
-
 Result<MemoryPlan> plan_memory(
     const codec::StreamInfo& info, std::uint32_t wanted_level, const MemoryUse& use
 )
@@ -41,8 +25,7 @@ Result<MemoryPlan> plan_memory(
     std::uint64_t needed = 0;
     for (std::uint32_t level = wanted + 1; level-- > 0;)
     {
-        // The last level may be followed by chunks that change no triangle; it counts them too.
-        needed = needed_bytes(level == finest ? info : prefix_info(info, level), use);
+        needed = needed_bytes(codec::prefix_info(info, level), use);
         if (needed <= use.cap_bytes)
         {
             return MemoryPlan{level, needed};

@@ -29,8 +29,4 @@ struct MemoryUse
     const codec::StreamInfo& info, std::uint32_t wanted_level, const MemoryUse& use
 );
 
-/// Returns what header and index would say of a stream that ends with `level`: the chunks of later
-/// levels are left out. Precondition: level < info.levels.size().
-[[nodiscard]] codec::StreamInfo prefix_info(const codec::StreamInfo& info, std::uint32_t level);
-
 }  // namespace vsplit::client

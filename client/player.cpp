@@ -173,10 +173,10 @@ Result<void> Player::plan()
              << info_.levels.size() - 1 << " is the finest that fits ("
              << megabytes(fitting->needed_bytes) << ")\n";
     }
-    const bool whole = level_ + 1 == info_.levels.size();
-    const codec::StreamInfo shown = whole ? info_ : prefix_info(info_, level_);
+    const codec::StreamInfo shown = codec::prefix_info(info_, level_);
     codec::DecodeLimits limits = header_limits(options_.device);
     limits.max_heap_bytes = options_.device.memory_bytes;
+    limits.max_level = level_;
     refiner_ = std::make_unique<Refiner>(shown, limits);
     out_ << table_head() << '\n';
     return display_ ? display_->prepare(shown) : Result<void>{};

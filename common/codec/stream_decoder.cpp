@@ -108,18 +108,18 @@ private:
         VSPLIT_TRY(info);
         info_ = std::move(*info);
         consume_unit();
-        reserve();
+        reserve(prefix_info(*info_, limits_.max_level));
         return current(StepKind::Header);
     }
 
-    void reserve()
+    void reserve(const StreamInfo& info)
     {
         std::uint32_t largest_level = 0;
         std::uint32_t largest_batch = 0;
         std::uint32_t largest_chunk = 0;
-        std::uint32_t level_start = info_->chunks.front().faces;
-        std::uint32_t vertices = info_->chunks.front().vertices;
-        for (const ChunkInfo& chunk : info_->chunks)
+        std::uint32_t level_start = info.chunks.front().faces;
+        std::uint32_t vertices = info.chunks.front().vertices;
+        for (const ChunkInfo& chunk : info.chunks)
         {
             largest_chunk = std::max(largest_chunk, chunk.bytes);
             largest_level = std::max(largest_level, chunk.faces - level_start);
@@ -127,12 +127,12 @@ private:
             level_start = chunk.ends_level ? chunk.faces : level_start;
             vertices = chunk.vertices;
         }
-        state_.bits = info_->grid.bits;
-        state_.mesh.reserve(info_->vertex_count, info_->face_count, largest_level);
+        state_.bits = info.grid.bits;
+        state_.mesh.reserve(info.vertex_count, info.face_count, largest_level);
         state_.splits.reserve(largest_batch);
         buffer_.reserve(largest_chunk);
         updates_.reserve(std::max<std::size_t>(
-            info_->chunks.front().faces, std::size_t{largest_batch} * kMostUpdates
+            info.chunks.front().faces, std::size_t{largest_batch} * kMostUpdates
         ));
     }
 
@@ -173,6 +173,10 @@ private:
         if (static_cast<std::uint8_t>(chunk.kind) >= proto::kFirstOptionalChunkKind)
         {
             return {};
+        }
+        if (chunk.kind == proto::ChunkKind::Batch && level_ >= limits_.max_level)
+        {
+            return fail(ErrorCode::LimitExceeded, "the level is beyond the limit");
         }
         step.kind = StepKind::Chunk;
         step.level_complete = chunk.ends_level;

@@ -365,7 +365,7 @@ Result<StreamInfo> parse_stream_info(std::span<const std::byte> prefix, const De
         return fail(ErrorCode::BadHeader, "bytes follow the index", reader.position());
     }
     VSPLIT_TRY(collect_levels(info));
-    if (decoder_heap_bytes(info) > limits.max_heap_bytes)
+    if (decoder_heap_bytes(prefix_info(info, limits.max_level)) > limits.max_heap_bytes)
     {
         return fail(ErrorCode::LimitExceeded, "decoding would need more memory than allowed");
     }

@@ -60,6 +60,23 @@ std::uint64_t stop_offset(const StreamInfo& info, const StopCondition& stop)
     return end;
 }
 
+StreamInfo prefix_info(const StreamInfo& info, std::uint32_t level)
+{
+    if (level + 1ULL >= info.levels.size())
+    {
+        return info;
+    }
+    StreamInfo prefix = info;
+    prefix.file_bytes = stop_offset(info, StopCondition{.level = level});
+    prefix.levels.resize(std::size_t{level} + 1);
+    prefix.vertex_count = prefix.levels.back().vertices;
+    prefix.face_count = prefix.levels.back().faces;
+    std::erase_if(prefix.chunks, [&](const ChunkInfo& chunk) {
+        return chunk.offset >= prefix.file_bytes;
+    });
+    return prefix;
+}
+
 std::uint64_t decoder_heap_bytes(const StreamInfo& info)
 {
     std::uint64_t largest_chunk = 0;

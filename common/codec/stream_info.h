@@ -21,6 +21,8 @@ struct DecodeLimits
     std::uint32_t max_chunk_bytes = 1U << 28;
     /// Largest heap that the decoder may come to use, bytes (see decoder_heap_bytes()).
     std::uint64_t max_heap_bytes = std::numeric_limits<std::uint64_t>::max();
+    /// Finest level to decode: later ones are refused and no memory is kept for them.
+    std::uint32_t max_level = std::numeric_limits<std::uint32_t>::max();
 };
 
 /// One row of the index: a run of bytes that is decoded as a whole.
@@ -114,7 +116,12 @@ struct StopCondition
 /// header and base, at most the file. `bytes` below header and base still gives header and base.
 [[nodiscard]] std::uint64_t stop_offset(const StreamInfo& info, const StopCondition& stop);
 
-/// Returns an upper bound of the heap that a StreamDecoder needs for the whole stream, bytes.
+/// Returns what header and index would say of a stream that ends with `level`: chunks that belong to
+/// later levels are left out. A level beyond the last gives `info` itself. Cost: linear in the index.
+[[nodiscard]] StreamInfo prefix_info(const StreamInfo& info, std::uint32_t level);
+
+/// Returns an upper bound of the heap that a StreamDecoder needs for the whole stream, bytes; for a
+/// decoder with DecodeLimits::max_level ask with prefix_info().
 [[nodiscard]] std::uint64_t decoder_heap_bytes(const StreamInfo& info);
 
 }  // namespace vsplit::codec

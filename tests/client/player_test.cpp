@@ -110,6 +110,24 @@ TEST(Player, StopsWhereItIsTold)
     EXPECT_NE(out.str().find("stopped at level 3"), std::string::npos);
 }
 
+TEST(Player, StopsAtTheFinestLevelThatFitsTheMemory)
+{
+    const TestStream& stream = encoded_torus();
+    ScriptedServer server({[&](Peer& peer) { serve(peer, stream); }});
+    Options options = options_for(server);
+    options.device.memory_bytes = 500000;
+    std::ostringstream out;
+    Player player(options, out);
+    const auto played = player.run();
+    ASSERT_TRUE(played.has_value()) << describe(played.error());
+    const Report& report = player.report();
+    ASSERT_FALSE(report.levels.empty());
+    EXPECT_LT(report.levels.size(), stream.info.levels.size());
+    EXPECT_LE(report.memory_planned_bytes, 500000U);
+    EXPECT_FALSE(report.complete);
+    EXPECT_NE(out.str().find("is the finest that fits"), std::string::npos);
+}
+
 TEST(Player, RefusesAModelWhoseBaseDoesNotFit)
 {
     ScriptedServer server({[&](Peer& peer) { serve(peer, encoded_torus()); }});

@@ -99,6 +99,28 @@ TEST(Refiner, AppliesOneChunkWhenThereIsNoTime)
     }
 }
 
+TEST(Refiner, RefusesLevelsBeyondItsLimit)
+{
+    const TestStream& stream = encoded_torus();
+    codec::DecodeLimits limits;
+    limits.max_level = 3;
+    const codec::StreamInfo prefix = codec::prefix_info(stream.info, 3);
+    EXPECT_EQ(prefix.file_bytes, stream.info.levels[3].cumulative_bytes);
+    limits.max_heap_bytes = codec::decoder_heap_bytes(prefix);
+    ASSERT_LT(limits.max_heap_bytes, codec::decoder_heap_bytes(stream.info));
+    Refiner refiner(prefix, limits);
+    std::span<const std::byte> bytes = stream.file;
+    for (int level = 0; level <= 3; ++level)
+    {
+        const auto progress = next_level(refiner, bytes);
+        ASSERT_TRUE(progress.has_value()) << describe(progress.error());
+    }
+    EXPECT_EQ(refiner.decoder().faces(), prefix.face_count);
+    const auto refused = next_level(refiner, bytes);
+    ASSERT_FALSE(refused.has_value());
+    EXPECT_EQ(refused.error().code, ErrorCode::LimitExceeded);
+}
+
 TEST(Refiner, ReportsDamageAndKeepsTheMeshBeforeIt)
 {
     TestStream stream = encoded_torus();
