@@ -151,8 +151,8 @@ void add_upright(PatchBuilder& builder)
     builder.fill_band(bore_circle(kBossEnd, kBore), bore_circle(kBossEnd, kBoss), 3);
     builder.fill_band(bore_circle(kBossEnd, kBoss), bore_circle(kUpright, kBoss), 3);
     builder.fill_polygon(reversed(loop(kUpright, low)), kX, reversed(bore_circle(kUpright, kBoss)));
-    const Polyline back = upright_edge(0, kBoreHeight), front = upright_edge(kUpright, kBoreHeight);
-    const Polyline top(back.begin() + 10, back.end() - 10);
+    const Polyline back = upright_edge(0, low);
+    const Polyline top(back.begin() + 10, back.end() - 10);  // without the straight sides
     builder.fill_strip(lifted(top, kX * kUpright), top, 3);
 }
 

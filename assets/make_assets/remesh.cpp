@@ -6,7 +6,6 @@
 #include "make_assets/editable_mesh.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <vector>
 
 namespace vsplit::assets {

@@ -11,8 +11,9 @@
 // * The base surface is the tangent plane of the vertex.
 // * 17 to 26 points hardly determine 16 control points, so a weak Tikhonov term is added. It acts on
 //   third differences of the control net, which vanish for every quadratic surface: it smooths
-//   noise without flattening the surface. Its weight is the one of least error on a noisy torus:
-//   10 times less doubles what noise does to the result, 100 times more gives the quadric fit.
+//   noise without flattening the surface. Its weight is the one of least error on a noisy torus: a
+//   thousand times less doubles what noise does to the result, ten times more loses the bicubic
+//   terms and with them the advantage over the quadric fit on smooth surfaces.
 // * Where fewer than 16 points exist, or they nearly lie on a line, the quadric fit takes over.
 #include "precompute/curvature.h"
 #include "precompute/local_fit.h"
