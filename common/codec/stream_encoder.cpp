@@ -77,6 +77,8 @@ private:
         chunks_.push_back(chunk);
         payload_.write_bytes(bytes);
         payload_.write(crc32c(bytes));
+        content_checksum_ =
+            crc32c(payload_.view().last(proto::kChunkChecksumBytes), content_checksum_);
         if (progress_)
         {
             progress_(
@@ -347,7 +349,7 @@ private:
         info.vertex_count = state_.mesh.vertex_count();
         info.face_count = state_.mesh.face_count();
         info.chunks = std::move(chunks_);
-        info.content_checksum = crc32c(payload_.view());
+        info.content_checksum = content_checksum_;
         std::array<std::int32_t, 3> extent{};
         for (const auto& position : plan_.mesh->positions)
         {
@@ -370,6 +372,7 @@ private:
     std::vector<std::array<std::int32_t, 3>> full_;  ///< Positions by vertex of the stream.
     std::vector<ChunkInfo> chunks_;
     ByteWriter payload_;
+    std::uint32_t content_checksum_ = 0;
     double bytes_per_split_ = 2.5;
 };
 

@@ -63,8 +63,9 @@ struct StreamInfo
     std::uint32_t face_count = 0;    ///< Triangles of the last level.
     std::uint32_t header_bytes = 0;  ///< Length of header and index.
     std::uint64_t file_bytes = 0;    ///< Length of the whole stream.
-    /// CRC-32C of all chunks: makes headers of different contents differ, so that a transfer is never
-    /// resumed with another file's bytes.
+    /// CRC-32C of the chunks' checksums (of the chunks themselves it would be a constant): makes
+    /// headers of different contents differ, so that a transfer is never resumed with another file's
+    /// bytes.
     std::uint32_t content_checksum = 0;
     std::vector<ChunkInfo> chunks;   ///< In file order.
     std::vector<LevelInfo> levels;   ///< Level 0 first.
