@@ -238,23 +238,21 @@ private:
     asio::awaitable<void> wait_for_sessions()
     {
         constexpr std::chrono::milliseconds kStep{20};
-        bool impatient = false;
-        signals_.async_wait([&impatient](const boost::system::error_code& error, int) {
-            impatient = impatient || !error;
+        // A member, because the handler may run after this coroutine has returned.
+        signals_.async_wait([this](const boost::system::error_code& error, int) {
+            impatient_ = impatient_ || !error;
         });
         const auto deadline = std::chrono::steady_clock::now() + settings_.grace;
-        while (!impatient && sessions_count_ > 0 && std::chrono::steady_clock::now() < deadline)
+        while (!impatient_ && sessions_count_ > 0 && std::chrono::steady_clock::now() < deadline)
         {
             timer_.expires_after(kStep);
             co_await timer_.async_wait(asio::as_tuple(asio::use_awaitable));
         }
-        boost::system::error_code ignored;
-        signals_.cancel(ignored);
-        co_await asio::post(strand_, asio::use_awaitable);
     }
 
     ServerSettings settings_;
     std::atomic<std::size_t> sessions_count_ = 0;
+    bool impatient_ = false;  ///< A second signal came; used on the strand only.
     std::list<std::weak_ptr<SessionControl>> sessions_;
     asio::io_context context_;
     Strand strand_;
