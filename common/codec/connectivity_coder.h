@@ -5,9 +5,11 @@
 // the coarse geometry: edges inside a wedge are unusually long, triangles become better and valences
 // approach six. Encoder and decoder run this same code.
 
+#include "codec/connectivity_model.h"
 #include "codec/context_model.h"
 #include "codec/float_log.h"
 #include "codec/refinement_mesh.h"
+#include "codec/traversal_view.h"
 #include "codec/vector3.h"
 
 #include <algorithm>
@@ -19,62 +21,9 @@
 
 namespace vsplit::codec {
 
-/// Learned weights of the connectivity decisions; each table is indexed by one context, see
-/// proto/STREAM_FORMAT.md, "Connectivity". Kept over the whole stream. Zero to begin with.
-struct ConnectivityModel
-{
-    // Does a split cover this face?
-    std::array<std::int32_t, 4 * 32> split_best_edge{};      ///< free neighbours x longest edge
-    std::array<std::int32_t, 32> split_second_edge{};        ///< second longest edge
-    std::array<std::int32_t, 16 * 12> split_edge_valence{};  ///< its end's valence x longest edge
-    std::array<std::int32_t, 32> split_shape{};              ///< longest edge against the others
-    std::array<std::int32_t, 16 * 16> split_valences{};      ///< least x greatest valence
-    std::array<std::int32_t, 32> split_size{};               ///< size against the neighbours'
-    // Which corner is the kept vertex?
-    std::array<std::int32_t, 16> kept_valence{};
-    std::array<std::int32_t, 64> kept_longer_edge{};  ///< longer edge at the corner x other free
-    std::array<std::int32_t, 64>
-        kept_shorter_edge{};                       ///< shorter edge at the corner x longer one long
-    std::array<std::int32_t, 32> kept_far_edge{};  ///< opposite edge against the mean
-    std::array<std::int32_t, 16 * 16> kept_beyond{};  ///< best next edge round the corner x valence
-    // Does the wedge go on?
-    std::array<std::int32_t, 64> grow_start{};        ///< side, first question, length
-    std::array<std::int32_t, 32 * 4> grow_edge{};     ///< the edge that would be inside x length
-    std::array<std::int32_t, 32> grow_cut_valence{};  ///< valence of that edge's far end x longer
-    std::array<std::int32_t, 16 * 8> grow_kept_valence{};  ///< valence that would stay x length
-    std::array<std::int32_t, 40> grow_beyond{};            ///< the next edge round the kept vertex
-    std::array<std::int32_t, 64> grow_length{};            ///< edge against the local mean x longer
-    std::array<std::int32_t, 64 * 8> grow_centre{};  ///< which vertex is nearer the centre x length
-    // Does the wedge touch the boundary?
-    std::array<std::int32_t, 16> boundary{};
-};
-
-/// Learning rates, 1/32768, of one batch: high while little was seen, then falling.
-struct LearningRates
-{
-    std::int32_t split = 650;
-    std::int32_t wedge = 1100;
-
-    /// The rates of the `batch`-th batch, batch >= 1.
-    [[nodiscard]] static LearningRates of_batch(std::uint32_t batch)
-    {
-        const auto number = static_cast<std::int32_t>(std::min<std::uint32_t>(batch, 10000));
-        return {std::max(650, 4000 / number), std::max(1100, 7000 / number)};
-    }
-};
-
-/// What the encoder wants coded: the splits of a level, and for each face of the coarse mesh the split
-/// whose wedge holds it, or kNoSplit.
-struct SplitPlan
-{
-    static constexpr std::uint32_t kNoSplit = 0xFFFFFFFF;
-    std::vector<Split> splits;
-    std::vector<std::uint32_t> split_of_face;
-};
-
 /// Codes which faces of a level are opened by splits. `Coder` is BitEncoder or BitDecoder.
 template <typename Coder>
-class ConnectivityCoder
+class ConnectivityCoder : private TraversalView
 {
 public:
     /// Works on `mesh`, whose level was started, learning in `model`. `plan` is needed by the encoder
@@ -86,13 +35,7 @@ public:
         const LearningRates& rates,
         const SplitPlan* plan
     )
-        : faces_(mesh.faces()),
-          points_(mesh.points()),
-          valences_(mesh.valences()),
-          model_(model),
-          coder_(coder),
-          rates_(rates),
-          plan_(plan)
+        : TraversalView(mesh), model_(model), coder_(coder), rates_(rates), plan_(plan)
     {
     }
 
@@ -123,89 +66,6 @@ public:
     }
 
 private:
-    /// What the traversal knows of a face's edges.
-    struct EdgeView
-    {
-        std::array<std::int32_t, 3> bucket{};  ///< 1 .. 28: how long; 0: the neighbour is not free.
-        std::int32_t free_neighbours = 0;
-        std::int32_t local_log = 0;  ///< Mean edge log of the face and its neighbours.
-    };
-
-    static std::int32_t log_total(const Face& face)
-    {
-        return face.edge_log[0] + face.edge_log[1] + face.edge_log[2];
-    }
-
-    /// Length of an edge against the four edges around it, in 1/8 octaves times four.
-    std::int32_t edge_ratio(Corner corner) const
-    {
-        const Face& face = faces_[face_of(corner)];
-        const Face& other = faces_[face_of(face.opposite[static_cast<std::size_t>(corner & 3)])];
-        return 6 * face.edge_log[static_cast<std::size_t>(corner & 3)] - log_total(face) -
-               log_total(other);
-    }
-
-    static std::int32_t ratio_bucket(std::int32_t ratio)
-    {
-        return clamp_int((ratio + 52) * 13 >> 6, 0, 27);
-    }
-
-    bool is_free(Corner corner) const { return faces_[face_of(corner)].state == FaceState::Free; }
-
-    Corner opposite(Corner corner) const
-    {
-        return faces_[face_of(corner)].opposite[static_cast<std::size_t>(corner & 3)];
-    }
-
-    std::uint32_t vertex(Corner corner) const
-    {
-        return faces_[face_of(corner)].vertex[static_cast<std::size_t>(corner & 3)];
-    }
-
-    std::int32_t valence(std::uint32_t vertex) const { return valences_[vertex]; }
-
-    /// Bucket of the edge across from `corner` if the face beyond is free, else `otherwise`.
-    std::int32_t free_edge_bucket(Corner corner, std::int32_t otherwise) const
-    {
-        const Corner across = opposite(corner);
-        return is_free(across) ? ratio_bucket(edge_ratio(corner)) + 1 : otherwise;
-    }
-
-    void prefetch(std::int32_t face, std::int32_t end) const
-    {
-        constexpr std::int32_t kAhead = 8;
-        if (face + kAhead < end)
-        {
-            for (const Corner corner : faces_[face + kAhead].opposite)
-            {
-                __builtin_prefetch(&faces_[face_of(corner)]);
-            }
-        }
-    }
-
-    EdgeView view_of(std::int32_t index) const
-    {
-        const Face& face = faces_[index];
-        const std::int32_t own = log_total(face);
-        EdgeView view;
-        std::int32_t neighbours = 0;
-        for (std::size_t k = 0; k < 3; ++k)
-        {
-            const Face& other = faces_[face_of(face.opposite[k])];
-            // A missing neighbour counts as one of the face's own size; selected without branches.
-            const std::int32_t boundary =
-                -static_cast<std::int32_t>(other.state == FaceState::Boundary);
-            const std::int32_t total = log_total(other);
-            const std::int32_t beyond = total ^ ((total ^ own) & boundary);
-            neighbours += beyond;
-            const std::int32_t free = -static_cast<std::int32_t>(other.state == FaceState::Free);
-            view.free_neighbours -= free;
-            view.bucket[k] = (ratio_bucket(6 * face.edge_log[k] - own - beyond) + 1) & free;
-        }
-        view.local_log = ((3 * own + neighbours) * 57) >> 10;
-        return view;
-    }
-
     bool ask_split(std::int32_t index, const EdgeView& view)
     {
         const Face& face = faces_[index];
@@ -507,9 +367,6 @@ private:
         change_valence(wedge.kept, opened - wedge.length);
     }
 
-    Face* faces_;
-    Point* points_;
-    std::uint16_t* valences_;
     ConnectivityModel& model_;
     Coder& coder_;
     LearningRates rates_;

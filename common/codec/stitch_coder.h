@@ -56,9 +56,12 @@ void code_stitch_group(
     stitches[group.front()] = group.front();
     for (const std::uint32_t v : group.subspan(1))
     {
-        const auto wanted = static_cast<std::size_t>(
-            std::ranges::find(representatives, stitches[v]) - representatives.begin()
-        );
+        std::size_t wanted = 0;
+        if constexpr (Coder::kEncodes)
+        {
+            const auto found = std::ranges::find(representatives, stitches[v]);
+            wanted = static_cast<std::size_t>(found - representatives.begin());
+        }
         const int bits = static_cast<int>(std::bit_width(representatives.size()));
         const std::size_t choice = coder.raw(static_cast<std::uint32_t>(wanted), bits);
         if (choice < representatives.size())

@@ -67,8 +67,8 @@ struct StreamInfo
     /// headers of different contents differ, so that a transfer is never resumed with another file's
     /// bytes.
     std::uint32_t content_checksum = 0;
-    std::vector<ChunkInfo> chunks;   ///< In file order.
-    std::vector<LevelInfo> levels;   ///< Level 0 first.
+    std::vector<ChunkInfo> chunks;  ///< In file order.
+    std::vector<LevelInfo> levels;  ///< Level 0 first.
 
     /// Length of the bounding-box diagonal, model units.
     [[nodiscard]] double diagonal() const;
@@ -81,7 +81,7 @@ struct StopCondition
     std::uint64_t bytes = std::numeric_limits<std::uint64_t>::max();  ///< Prefix at most so long.
     std::uint32_t faces = std::numeric_limits<std::uint32_t>::max();  ///< At most so many faces.
     /// Stop at the first level whose RMS error, model units, is not above this.
-    double error = 0.0;
+    double error = -1.0;
 };
 
 /// Returns how many bytes of a stream must be there before its header length is known.
