@@ -13,6 +13,7 @@ namespace vsplit::client {
 class LinkShaper
 {
 public:
+    /// A point in time on the clock that never jumps.
     using TimePoint = std::chrono::steady_clock::time_point;
 
     /// Starts with an empty bucket at `now`.

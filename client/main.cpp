@@ -29,9 +29,10 @@ Result<void> write_json(const client::Options& options, const client::Report& re
     {
         return {};
     }
-    const std::string text =
-        client::to_json(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
-        "\n";
+    const std::string text = client::to_json(report).dump(
+                                 2, ' ', false, nlohmann::ordered_json::error_handler_t::replace
+                             ) +
+                             "\n";
     if (options.json == "-")
     {
         std::cout << text << std::flush;

@@ -87,7 +87,7 @@ Result<void> Player::run()
     connection_ = std::make_unique<Connection>(connection_options(options_));
     const auto outcome = play();
     report_.seconds = elapsed();
-    if (outcome)
+    if (outcome && !restricted_)
     {
         await_goodbye();
     }
@@ -101,6 +101,7 @@ Result<void> Player::play()
 {
     VSPLIT_TRY(read_header());
     VSPLIT_TRY(plan());
+    VSPLIT_TRY(start_refining());
     while (needs_frames() || !reached_end())
     {
         if (needs_frames())
@@ -168,18 +169,39 @@ Result<void> Player::plan()
         stop.condition.level = level_;
         end_ = codec::stop_offset(info_, stop.condition);
         connection_->restrict_to(stop);
+        restricted_ = true;
         out_ << "memory: " << options_.device.name << " has "
              << megabytes(options_.device.memory_bytes) << "; level " << level_ << " of "
              << info_.levels.size() - 1 << " is the finest that fits ("
              << megabytes(fitting->needed_bytes) << ")\n";
     }
+    return {};
+}
+
+Result<void> Player::start_refining()
+{
     const codec::StreamInfo shown = codec::prefix_info(info_, level_);
     codec::DecodeLimits limits = header_limits(options_.device);
     limits.max_heap_bytes = options_.device.memory_bytes;
     limits.max_level = level_;
     refiner_ = std::make_unique<Refiner>(shown, limits);
+    VSPLIT_TRY(feed_header());
     out_ << table_head() << '\n';
     return display_ ? display_->prepare(shown) : Result<void>{};
+}
+
+// The header was taken from the queue before there was a decoder.
+Result<void> Player::feed_header()
+{
+    std::span<const std::byte> rest = header_;
+    while (!rest.empty())
+    {
+        const auto taken = refiner_->feed(rest);
+        VSPLIT_TRY(taken);
+        rest = rest.subspan(*taken);
+        VSPLIT_TRY(refiner_->advance({}));
+    }
+    return {};
 }
 
 Result<void> Player::refine()
@@ -198,14 +220,6 @@ Result<void> Player::refine()
 
 Result<void> Player::pump_bytes()
 {
-    // The header was taken from the queue before there was a decoder.
-    const std::uint64_t received = refiner_->decoder().received_bytes();
-    if (received < header_.size())
-    {
-        const auto taken = refiner_->feed(std::span(header_).subspan(received));
-        VSPLIT_TRY(taken);
-        return {};
-    }
     while (true)
     {
         const std::uint64_t missing = end_ - refiner_->decoder().received_bytes();
@@ -230,7 +244,7 @@ Result<void> Player::account(const Progress& progress)
     }
     if (!progress.level_complete)
     {
-        if (progress.changed && display_)
+        if (progress.changed && display_ && !report_.levels.empty())
         {
             draw_frame();
         }
@@ -314,8 +328,8 @@ Result<void> Player::finish()
                                  : write_ply(options_.save, codec::extract_mesh(decoder));
 }
 
-// The server's last words follow the last byte; they belong to the bytes on the wire. What else
-// comes is not needed: a stop that was moved forward lets a little more through.
+// The server's last words follow the last byte; they belong to the bytes on the wire. After a stop
+// that was moved forward, what was already on its way comes before them: better hang up.
 void Player::await_goodbye()
 {
     const auto deadline = Clock::now() + kGoodbyeWait;

@@ -36,6 +36,8 @@ private:
     [[nodiscard]] Result<void> play();
     [[nodiscard]] Result<void> read_header();
     [[nodiscard]] Result<void> plan();
+    [[nodiscard]] Result<void> start_refining();
+    [[nodiscard]] Result<void> feed_header();
     [[nodiscard]] Result<void> refine();
     [[nodiscard]] Result<void> pump_bytes();
     [[nodiscard]] Result<void> account(const Progress& progress);
@@ -61,6 +63,7 @@ private:
     codec::StreamInfo info_;   ///< Of the whole stream.
     std::uint32_t level_ = 0;  ///< The finest level that will be decoded.
     std::uint64_t end_ = 0;    ///< Length of the prefix that will be decoded.
+    bool restricted_ = false;  ///< The stop was moved forward during the transfer.
     std::unique_ptr<Refiner> refiner_;
     std::vector<std::byte> block_;
 };

@@ -13,7 +13,7 @@
 namespace vsplit::client {
 namespace {
 
-using nlohmann::json;
+using json = nlohmann::ordered_json;
 
 // Three digits after the point are microseconds; more would be noise.
 double round_to_micro(double value)
@@ -76,7 +76,7 @@ FrameTimes summarize(std::span<const double> frame_ms)
     return times;
 }
 
-json to_json(const Report& report)
+nlohmann::ordered_json to_json(const Report& report)
 {
     json levels = json::array();
     for (const LevelRow& row : report.levels)

@@ -56,7 +56,7 @@ struct Report
 [[nodiscard]] FrameTimes summarize(std::span<const double> frame_ms);
 
 /// Returns the report with the names that programs rely on.
-[[nodiscard]] nlohmann::json to_json(const Report& report);
+[[nodiscard]] nlohmann::ordered_json to_json(const Report& report);
 
 /// Returns the two lines that head the table of levels.
 [[nodiscard]] std::string table_head();

@@ -54,7 +54,7 @@ TEST(Report, HasTheNamesThatProgramsRelyOn)
     report.transferred = {700, 780, 2};
     report.complete = true;
 
-    const nlohmann::json json = to_json(report);
+    const nlohmann::ordered_json json = to_json(report);
     EXPECT_EQ(json.at("model"), "scans/cow");
     EXPECT_EQ(json.at("device"), "pda");
     EXPECT_EQ(json.at("link"), "gprs");
