@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <cstring>
 
 /// Four floats that are computed on at once. GCC's and Clang's vector extension gives SSE, NEON or
@@ -10,9 +9,6 @@ namespace vsplit::lanes {
 
 /// Four floats in one register.
 using Float4 = float __attribute__((vector_size(16)));
-
-/// Four comparison results: -1 for true, 0 for false.
-using Mask4 = std::int32_t __attribute__((vector_size(16)));
 
 /// Loads four floats.
 [[nodiscard]] inline Float4 load(const std::array<float, 4>& values)
