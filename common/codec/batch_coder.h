@@ -5,6 +5,7 @@
 
 #include "codec/connectivity_coder.h"
 #include "codec/geometry_coder.h"
+#include "codec/initial_model.h"
 #include "codec/refinement_mesh.h"
 #include "core/result.h"
 
@@ -19,8 +20,7 @@ namespace vsplit::codec {
 struct BatchState
 {
     RefinementMesh mesh;
-    ConnectivityModel connectivity;
-    GeometryModel geometry;
+    LearnedModel model = initial_model();
     PredictionWeights weights = kInitialWeights;
     LearningRates rates;
     std::vector<Split> splits;     ///< Of the current chunk.
@@ -103,7 +103,9 @@ template <typename Coder>
 )
 {
     state.splits.clear();
-    ConnectivityCoder<Coder> connectivity(state.mesh, state.connectivity, coder, state.rates, plan);
+    ConnectivityCoder<Coder> connectivity(
+        state.mesh, state.model.connectivity, coder, state.rates, plan
+    );
     if (!connectivity.run(state.cursor, state.batch_faces, count, state.splits))
     {
         return fail(ErrorCode::BadChunk, "a chunk announces more splits than it holds");
@@ -162,7 +164,12 @@ template <typename Coder>
             wanted = actual[i];
         }
         const auto position = code_position(
-            coder, state.geometry, frame, state.weights, split.kind != SplitKind::Interior, wanted
+            coder,
+            state.model.geometry,
+            frame,
+            state.weights,
+            split.kind != SplitKind::Interior,
+            wanted
         );
         for (const std::int32_t coordinate : position)
         {

@@ -30,6 +30,10 @@ public:
     StreamBuilder(const StreamPlan& plan, const std::function<void(double)>& progress)
         : plan_(plan), progress_(progress), place_(plan.mesh->positions.size(), kNoVertex)
     {
+        if (plan.training != nullptr)
+        {
+            state_.model = *plan.training;
+        }
     }
 
     Result<std::vector<std::byte>> run()
@@ -45,6 +49,10 @@ public:
             return fail(ErrorCode::Internal, "the collapse sequence does not undo itself");
         }
         add_stitches();
+        if (plan_.training != nullptr)
+        {
+            *plan_.training = state_.model;
+        }
         return assemble();
     }
 

@@ -40,9 +40,12 @@ struct PlannedLevel
 struct StreamPlan
 {
     QuantizationGrid grid;
-    const GridMesh* mesh = nullptr;           ///< The complete mesh.
-    std::vector<Triangle> base_triangles;     ///< In vertices of `mesh`.
-    std::vector<PlannedLevel> levels;         ///< Base first, finest last (its shift is 0).
+    const GridMesh* mesh = nullptr;        ///< The complete mesh.
+    std::vector<Triangle> base_triangles;  ///< In vertices of `mesh`.
+    std::vector<PlannedLevel> levels;      ///< Base first, finest last (its shift is 0).
+    /// For training only: the model to start from instead of initial_model(); what was learned comes
+    /// back in it. The stream is then not decodable.
+    LearnedModel* training = nullptr;
     std::span<const std::uint32_t> stitches;  ///< As EncodedMesh's; empty when nothing was cut.
 };
 

@@ -34,8 +34,10 @@ constexpr std::uint32_t kDefaultBaseVertices = 64;
 constexpr double kRegularShare = 0.45;
 
 /// Share of the vertices that a level below those removes: smaller follows the surface better, larger
-/// costs less.
+/// costs less, which small files feel because each level takes about twenty bytes of its own.
 constexpr double kCoarseShare = 0.2;
+constexpr double kCoarseShareOfSmall = 0.3;
+constexpr std::size_t kSmallMesh = 8000;
 
 /// Levels that make less progress than this end the sequence.
 constexpr double kLeastShare = 0.02;
@@ -66,7 +68,7 @@ LevelStyle style_for(Metric metric, std::size_t vertices, std::size_t all)
             .largest_share = 1.0,
         };
     }
-    LevelStyle style{.largest_share = kCoarseShare};
+    LevelStyle style{.largest_share = all < kSmallMesh ? kCoarseShareOfSmall : kCoarseShare};
     const double smallest = static_cast<double>(kSmallestBatch) / static_cast<double>(vertices);
     style.largest_share = std::max(style.largest_share, smallest);
     return style;
@@ -235,7 +237,8 @@ Result<EncodedMesh> encode_mesh(
     );
     result.seconds.distance = lap(start);
 
-    const auto plan = make_plan(sequence, grid, quantised, errors, stitches);
+    auto plan = make_plan(sequence, grid, quantised, errors, stitches);
+    plan.training = options.training;
     auto file = codec::encode_stream(plan, [&](double share) {
         if (progress)
         {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "codec/initial_model.h"
 #include "codec/stream_info.h"
 #include "core/result.h"
 #include "mesh/indexed_mesh.h"
@@ -19,6 +20,8 @@ struct EncodeOptions
     int position_bits = 12;  ///< 8 .. 20.
     Metric metric = Metric::Curvature;
     std::uint32_t base_vertices = 0;  ///< Aim for the base mesh; 0 lets the encoder choose.
+    /// For training only, see codec::StreamPlan::training.
+    codec::LearnedModel* training = nullptr;
     unsigned threads = 1;  ///< Worker threads, at least 1; the bytes do not depend on it.
 };
 
