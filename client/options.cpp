@@ -77,7 +77,10 @@ Result<void> read_error_stop(const std::string& text, StopPlan& stop)
             ErrorCode::BadRequest, "--error " + text + " is not a number such as 0.5 or 0.1%"
         );
     }
-    stop.condition.error = value;
+    if (value > 0.0)
+    {
+        stop.condition.error = value;  // Without any error is the end of the stream, not a stop.
+    }
     return {};
 }
 

@@ -56,7 +56,7 @@ Result<std::vector<std::byte>> Transfer::open(const StopPlan& stop)
     open.stop.level = stop.condition.level;
     open.stop.bytes = stop.condition.bytes;
     open.stop.faces = stop.condition.faces;
-    open.stop.error = stop.condition.error;
+    open.stop.error = std::max(0.0, stop.condition.error);  // 0 is "none" on the wire.
     open.stop.error_unit =
         stop.error_in_percent ? wire::ErrorUnit::DiagonalPercent : wire::ErrorUnit::ModelUnits;
     open.screen_width = saturate(request_.screen_width);

@@ -80,7 +80,8 @@ struct StopCondition
     std::uint32_t level = std::numeric_limits<std::uint32_t>::max();  ///< Stop at this level.
     std::uint64_t bytes = std::numeric_limits<std::uint64_t>::max();  ///< Prefix at most so long.
     std::uint32_t faces = std::numeric_limits<std::uint32_t>::max();  ///< At most so many faces.
-    /// Stop at the first level whose RMS error, model units, is not above this.
+    /// Stop at the first level whose RMS error, model units, is not above this; negative never stops
+    /// (flat models have coarse levels without any error).
     double error = -1.0;
 };
 

@@ -26,8 +26,8 @@ struct StopRequest
     std::uint32_t level = std::numeric_limits<std::uint32_t>::max();  ///< Stop at this level.
     std::uint64_t bytes = std::numeric_limits<std::uint64_t>::max();  ///< Prefix at most so long.
     std::uint32_t faces = std::numeric_limits<std::uint32_t>::max();  ///< At most so many faces.
-    double error =
-        0.0;  ///< Stop at the first level whose RMS error is not above this; finite, >= 0.
+    /// Stop at the first level whose RMS error is not above this; finite, >= 0; 0 none.
+    double error = 0.0;
     ErrorUnit error_unit = ErrorUnit::ModelUnits;
 
     friend bool operator==(const StopRequest&, const StopRequest&) = default;

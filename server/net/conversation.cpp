@@ -14,11 +14,12 @@ codec::StopCondition stop_condition(const wire::StopRequest& stop, const codec::
 {
     constexpr double kPercent = 0.01;
     const bool relative = stop.error_unit == wire::ErrorUnit::DiagonalPercent;
+    const double error = relative ? stop.error * kPercent * info.diagonal() : stop.error;
     return codec::StopCondition{
         .level = stop.level,
         .bytes = stop.bytes,
         .faces = stop.faces,
-        .error = relative ? stop.error * kPercent * info.diagonal() : stop.error,
+        .error = error > 0.0 ? error : codec::StopCondition{}.error,
     };
 }
 

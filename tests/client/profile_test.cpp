@@ -163,6 +163,14 @@ TEST(Options, ReadEverything)
     EXPECT_EQ(options->up, UpAxis::Z);
 }
 
+TEST(Options, TakeAnErrorOfZeroForNoStop)
+{
+    const auto parsed = parse({"h:1/m", "--error", "0"});
+    const auto* options = std::get_if<Options>(&parsed);
+    ASSERT_NE(options, nullptr);
+    EXPECT_LT(options->stop.condition.error, 0.0);
+}
+
 TEST(Options, EndWithTheStatusForUsageOnAMistake)
 {
     EXPECT_EQ(exit_of({}), 2);

@@ -89,6 +89,11 @@ TEST_F(TransferTest, SaysWhoItIsAndWhatItWants)
     EXPECT_EQ(message.stop.error_unit, wire::ErrorUnit::DiagonalPercent);
 }
 
+TEST_F(TransferTest, AsksForEverythingWhenNoStopIsGiven)
+{
+    EXPECT_EQ(open().stop, wire::StopRequest{});
+}
+
 TEST_F(TransferTest, ReadsAConversationHoweverItIsCut)
 {
     const Bytes all = wire::make_frame(wire::FrameType::Waiting) + info_frame(0, 60) +
