@@ -6,6 +6,12 @@
 #include <limits>
 
 namespace vsplit::codec {
+namespace {
+
+/// Below this the state of Draco's coder takes in its next byte.
+constexpr std::uint32_t kLeastAnsState = 4096;
+
+}  // namespace
 
 std::uint32_t BitEncoder::raw(std::uint32_t value, int count)
 {
@@ -75,6 +81,12 @@ Result<void> BitDecoder::start(std::span<const std::byte> bytes)
 Result<void> BitDecoder::finish() const
 {
     draco::AnsDecoder ans = ans_;
+    // A byte is taken in only when the next bit asks for it; after a bit of the least probability the
+    // last byte is still there.
+    if (ans.state < kLeastAnsState && ans.buf_offset > 0)
+    {
+        ans.state = ans.state << 8 | ans.buf[--ans.buf_offset];
+    }
     if (raw_position_ != raw_.size() || pending_ != 0 || ans.buf_offset != 0 ||
         draco::ans_read_end(&ans) == 0)
     {
