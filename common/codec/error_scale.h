@@ -68,8 +68,9 @@ inline constexpr std::array<double, kErrorStepsPerOctave> kErrorSteps{
     {
         return kZeroErrorCode;
     }
+    // One more than the logarithm says, which may be rounded down.
     auto code = static_cast<std::uint32_t>(
-        std::fmax(0.0, std::floor(-std::log2(share) * kErrorStepsPerOctave))
+        std::fmax(0.0, std::floor(-std::log2(share) * kErrorStepsPerOctave) + 1.0)
     );
     while (code > 0 && error_from_code(code) < share)
     {
