@@ -95,6 +95,7 @@ struct RingSums
     float outer_plane = 0.0F;  ///< Sum of outer vector area . ring vertex.
 };
 
+/// Sums over the edges of a ring whose positions are relative to `mean`.
 [[nodiscard]] inline RingSums sum_ring(const Ring& ring, const Vector3& mean)
 {
     RingSums sums;

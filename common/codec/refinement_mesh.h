@@ -130,10 +130,13 @@ public:
     /// Number of faces that a chunk's splits add.
     [[nodiscard]] static std::uint32_t added_faces(std::span<const Split> splits);
 
+    /// Vertices of the mesh now.
     [[nodiscard]] std::uint32_t vertex_count() const { return vertex_count_; }
 
+    /// Faces of the mesh now.
     [[nodiscard]] std::uint32_t face_count() const { return face_count_; }
 
+    /// Faces for which memory is reserved.
     [[nodiscard]] std::uint32_t face_capacity() const
     {
         return static_cast<std::uint32_t>(storage_.size() - 1);
@@ -142,21 +145,25 @@ public:
     /// Faces by index; index -1 is valid and has state Boundary.
     [[nodiscard]] Face* faces() { return storage_.data() + 1; }
 
+    /// Faces by index, read only.
     [[nodiscard]] const Face* faces() const { return storage_.data() + 1; }
 
     /// Positions by vertex, including those of removed vertices not yet applied.
     [[nodiscard]] Point* points() { return points_.data(); }
 
+    /// Positions by vertex, read only.
     [[nodiscard]] const Point* points() const { return points_.data(); }
 
     /// Valences by vertex (edges); kManyNeighbours stands for that many or more and never changes.
     [[nodiscard]] std::uint16_t* valences() { return valences_.data(); }
 
+    /// Vertex at a corner.
     [[nodiscard]] std::uint32_t vertex(Corner corner) const
     {
         return faces()[face_of(corner)].vertex[static_cast<std::size_t>(corner & 3)];
     }
 
+    /// Corner across the edge opposite to a corner; -1 at the boundary.
     [[nodiscard]] Corner opposite(Corner corner) const
     {
         return faces()[face_of(corner)].opposite[static_cast<std::size_t>(corner & 3)];

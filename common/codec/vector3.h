@@ -15,16 +15,19 @@ struct Vector3
     float z = 0.0F;
 };
 
+/// Componentwise sum.
 [[nodiscard]] inline Vector3 operator+(const Vector3& a, const Vector3& b)
 {
     return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
 
+/// Componentwise difference.
 [[nodiscard]] inline Vector3 operator-(const Vector3& a, const Vector3& b)
 {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
 
+/// Scales every component.
 [[nodiscard]] inline Vector3 operator*(const Vector3& a, float s)
 {
     return {a.x * s, a.y * s, a.z * s};

@@ -13,16 +13,19 @@ namespace vsplit::precompute {
 /// A vector in double precision, grid units.
 using Vector3 = std::array<double, 3>;
 
+/// Componentwise sum.
 [[nodiscard]] inline Vector3 operator+(const Vector3& a, const Vector3& b)
 {
     return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
 }
 
+/// Componentwise difference.
 [[nodiscard]] inline Vector3 operator-(const Vector3& a, const Vector3& b)
 {
     return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
 
+/// Scales every component.
 [[nodiscard]] inline Vector3 operator*(const Vector3& a, double s)
 {
     return {a[0] * s, a[1] * s, a[2] * s};
@@ -75,8 +78,10 @@ public:
         std::uint32_t removed, const OneRing& ring, std::size_t kept, std::uint32_t valence_limit
     ) const;
 
+    /// True for vertices on the boundary.
     [[nodiscard]] bool is_boundary(std::uint32_t vertex) const { return boundary_[vertex] != 0; }
 
+    /// True for vertices that a collapse folded away.
     [[nodiscard]] bool is_removed(std::uint32_t vertex) const { return corner_of_[vertex] < 0; }
 
     /// Neighbours of a vertex.

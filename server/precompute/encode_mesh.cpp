@@ -187,14 +187,8 @@ codec::StreamPlan make_plan(
     return plan;
 }
 
-}  // namespace
-
-Result<EncodedMesh> encode_mesh(
-    const IndexedMesh& mesh,
-    std::span<const std::uint32_t> stitches,
-    const EncodeOptions& options,
-    const ProgressSink& progress
-)
+/// Refuses what no stream can hold.
+Result<void> check_size(const IndexedMesh& mesh)
 {
     if (mesh.triangles.empty() || mesh.positions.size() < 3)
     {
@@ -206,6 +200,30 @@ Result<EncodedMesh> encode_mesh(
             ErrorCode::InputTooLarge, "the mesh has more vertices or faces than a stream can hold"
         );
     }
+    return {};
+}
+
+/// Ties the share done to the name of its stage.
+std::function<void(double)> stage_progress(const ProgressSink& progress, std::string_view stage)
+{
+    return [&progress, stage](double share) {
+        if (progress)
+        {
+            progress(stage, share);
+        }
+    };
+}
+
+}  // namespace
+
+Result<EncodedMesh> encode_mesh(
+    const IndexedMesh& mesh,
+    std::span<const std::uint32_t> stitches,
+    const EncodeOptions& options,
+    const ProgressSink& progress
+)
+{
+    VSPLIT_TRY(check_size(mesh));
     const auto begin = Clock::now();
     auto start = begin;
     EncodedMesh result;
@@ -228,23 +246,13 @@ Result<EncodedMesh> encode_mesh(
         sequence.triangles,
         grid.bits,
         options.threads,
-        [&](double share) {
-            if (progress)
-            {
-                progress("measure", share);
-            }
-        }
+        stage_progress(progress, "measure")
     );
     result.seconds.distance = lap(start);
 
     auto plan = make_plan(sequence, grid, quantised, errors, stitches);
     plan.training = options.training;
-    auto file = codec::encode_stream(plan, [&](double share) {
-        if (progress)
-        {
-            progress("code", share);
-        }
-    });
+    auto file = codec::encode_stream(plan, stage_progress(progress, "code"));
     VSPLIT_TRY(file);
     result.file = std::move(*file);
     auto info = codec::parse_stream_info(result.file);
