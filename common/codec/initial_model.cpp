@@ -23,7 +23,7 @@ static_assert(kWeightCount * sizeof(std::int32_t) == sizeof(ConnectivityModel));
 static_assert(kBitCount * sizeof(AdaptiveBit) == sizeof(GeometryModel));
 
 constexpr std::array<std::uint8_t, kWeightCount + kBitCount> kPacked{
-#include "codec/initial_model.inc"
+#include "initial_model.inc"
 };
 
 const std::int32_t* weights_of(const LearnedModel& model)

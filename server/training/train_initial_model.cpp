@@ -1,5 +1,5 @@
 // Learns the state in which every stream starts, from a list of meshes: prints the contents of
-// common/codec/initial_model.inc. Run through scripts/train-model; a new table is a new format.
+// proto/initial_model.inc. Run through scripts/train-model; a new table is a new format.
 #include "codec/initial_model.h"
 #include "precompute/encode_mesh.h"
 #include "precompute/mesh_io.h"
