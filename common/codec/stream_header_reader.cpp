@@ -116,6 +116,7 @@ struct RowContext
     std::uint32_t vertices = 0;
     std::uint32_t faces = 0;
     std::uint64_t offset = 0;
+    bool ends_level = true;
 };
 
 Result<void> read_error_code(ByteReader& reader, std::uint32_t& code)
@@ -199,17 +200,19 @@ Result<ChunkInfo> read_row(
         return fail(ErrorCode::LimitExceeded, "a chunk is longer than the limit allows");
     }
     chunk.bytes = static_cast<std::uint32_t>(*length / 4);
-    chunk.ends_level = (*length & proto::kRowContinuesLevel) == 0;
     const bool has_boundary = (*length & proto::kRowHasBoundary) != 0;
     if (static_cast<std::uint8_t>(context.kind) < proto::kFirstOptionalChunkKind)
     {
+        context.ends_level = (*length & proto::kRowContinuesLevel) == 0;
         VSPLIT_TRY(read_counts(reader, context, info, has_boundary));
-        if (chunk.ends_level)
+        if (context.ends_level)
         {
             VSPLIT_TRY(read_error_code(reader, context.rms_code));
             VSPLIT_TRY(read_error_code(reader, context.max_code));
         }
     }
+    // An optional chunk leaves a level as open or complete as it was.
+    chunk.ends_level = context.ends_level;
     chunk.offset = context.offset;
     context.offset += chunk.bytes;
     chunk.vertices = context.vertices;

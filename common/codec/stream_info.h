@@ -30,7 +30,7 @@ struct ChunkInfo
 {
     proto::ChunkKind kind = proto::ChunkKind::Batch;
     std::uint8_t codec = 0;      ///< Codec of this kind; 0 is the only one of version 0.
-    bool ends_level = true;      ///< True when the mesh reaches the next level after it.
+    bool ends_level = true;      ///< True when the mesh is at a level after it.
     std::uint64_t offset = 0;    ///< First byte in the file.
     std::uint32_t bytes = 0;     ///< Length, the checksum at its end included.
     std::uint32_t vertices = 0;  ///< Vertices of the mesh after it.
