@@ -39,6 +39,17 @@ void RefinementMesh::reserve(
 
 Result<void> RefinementMesh::set_base(const GridMesh& base, std::int32_t max_index)
 {
+    auto done = take_base(base, max_index);
+    if (!done)
+    {
+        vertex_count_ = 0;
+        face_count_ = 0;
+    }
+    return done;
+}
+
+Result<void> RefinementMesh::take_base(const GridMesh& base, std::int32_t max_index)
+{
     vertex_count_ = static_cast<std::uint32_t>(base.positions.size());
     face_count_ = static_cast<std::uint32_t>(base.triangles.size());
     VSPLIT_ASSERT(vertex_count_ <= points_.size() && face_count_ <= face_capacity());

@@ -111,7 +111,8 @@ public:
 
     /// Takes over a base mesh whose positions are in units of 2^shift cells.
     /// `max_index`: largest coordinate on that grid. Errors: BadChunk when an index or a coordinate is
-    /// out of range or the triangles are not a consistently oriented 2-manifold with boundary.
+    /// out of range or the triangles are not a consistently oriented 2-manifold with boundary; the mesh
+    /// is empty then.
     /// Precondition: it fits the reservation. Safe on untrusted input.
     [[nodiscard]] Result<void> set_base(const GridMesh& base, std::int32_t max_index);
 
@@ -171,6 +172,7 @@ public:
 
 private:
     void link(Corner a, Corner b);
+    [[nodiscard]] Result<void> take_base(const GridMesh& base, std::int32_t max_index);
     [[nodiscard]] Result<void> link_base();
     [[nodiscard]] Result<void> check_fans();
     std::int32_t add_face(std::array<std::uint32_t, 3> vertices, const Face& like);

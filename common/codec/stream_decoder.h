@@ -46,10 +46,11 @@ struct Step
 };
 
 /// Turns the bytes of a stream, as they come, into a mesh that gets finer. Vertices are appended and
-/// keep their index; triangles keep their slot. After an error the last good mesh stays readable and
-/// every further call gives the same error. Memory is reserved once, when the header is known, and
-/// checked against the limits before that. Not thread safe. Safe on untrusted input. Never throws on
-/// data. Source: proto/STREAM_FORMAT.md.
+/// keep their index; triangles keep their slot. After an error every further call gives the same
+/// error and the mesh stays readable: the last good one where a checksum failed; where a chunk
+/// contradicts itself, a valid one that may already hold a part of it. Memory is reserved once, when
+/// the header is known, and checked against the limits before that. Not thread safe. Safe on untrusted
+/// input. Never throws on data. Source: proto/STREAM_FORMAT.md.
 class StreamDecoder
 {
 public:
