@@ -110,7 +110,7 @@ Result<GridMesh> decode_base_mesh(
     buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     draco::Decoder decoder;
     auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
-    if (!decoded.ok())
+    if (!decoded.ok() || buffer.remaining_size() != 0)
     {
         return bad_base();
     }
