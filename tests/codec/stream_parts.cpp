@@ -122,17 +122,15 @@ Decoded decode(std::span<const std::byte> file, const codec::DecodeLimits& limit
     while (true)
     {
         const auto taken = decoder.feed(file.subspan(result.taken));
-        if (taken)
-        {
-            result.taken += *taken;
-        }
+        result.taken += taken.value_or(0);
         const auto step = decoder.step();
         if (!step)
         {
             result.error = step.error();
             break;
         }
-        if (step->kind == codec::StepKind::NeedBytes || step->kind == codec::StepKind::Complete)
+        const bool idle = step->kind == codec::StepKind::NeedBytes && *taken == 0;
+        if (idle || step->kind == codec::StepKind::Complete)
         {
             break;
         }
@@ -145,6 +143,7 @@ Decoded decode(std::span<const std::byte> file, const codec::DecodeLimits& limit
             result.levels.push_back(snapshot(decoder));
         }
     }
+    result.last = snapshot(decoder);
     result.complete = decoder.complete();
     result.stitches.assign(decoder.stitches().begin(), decoder.stitches().end());
     return result;

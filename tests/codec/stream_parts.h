@@ -57,6 +57,7 @@ struct Decoded
 {
     std::vector<Snapshot> chunks;  ///< After every chunk that changed the mesh.
     std::vector<Snapshot> levels;  ///< After every level.
+    Snapshot last;                 ///< In the end, also after an error.
     std::vector<std::uint32_t> stitches;
     std::optional<Error> error;
     bool complete = false;
