@@ -1,0 +1,116 @@
+// Streams that once were made must decode to the same meshes for ever, on every machine.
+
+#include "codec/golden_streams.h"
+#include "codec/stream_parts.h"
+#include "core/byte_writer.h"
+#include "core/crc32c.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iomanip>
+#include <sstream>
+
+namespace vsplit::test {
+namespace {
+
+/// CRC-32C of a list's numbers, 32 bits each, little-endian.
+template <typename List>
+std::uint32_t checksum(const List& rows)
+{
+    ByteWriter bytes;
+    for (const auto& row : rows)
+    {
+        for (const auto number : row)
+        {
+            bytes.write(static_cast<std::uint32_t>(number));
+        }
+    }
+    return crc32c(bytes.view());
+}
+
+/// What a stream decodes to: one line a level, then one for the stitches if there are any.
+std::string describe_meshes(const Decoded& decoded)
+{
+    std::ostringstream out;
+    out << std::setfill('0') << "level vertices faces shift positions triangles\n";
+    const auto hex = [](std::uint32_t number) {
+        std::ostringstream text;
+        text << std::hex << std::setw(8) << std::setfill('0') << number;
+        return text.str();
+    };
+    for (const Snapshot& level : decoded.levels)
+    {
+        out << level.level << ' ' << level.mesh.positions.size() << ' '
+            << level.mesh.triangles.size() << ' ' << level.shift << ' '
+            << hex(checksum(level.mesh.positions)) << ' ' << hex(checksum(level.mesh.triangles))
+            << '\n';
+    }
+    if (!decoded.stitches.empty())
+    {
+        const std::vector<std::vector<std::uint32_t>> rows{decoded.stitches};
+        out << "stitches " << hex(checksum(rows)) << '\n';
+    }
+    return out.str();
+}
+
+std::string read_text(const std::string& path)
+{
+    std::ifstream file(path);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+}
+
+TEST(Golden, DecodesToTheSameMeshesAsEver)
+{
+    for (const GoldenStream& stream : golden_streams())
+    {
+        SCOPED_TRACE(stream.name);
+        const Decoded decoded = decode(read_source_file(stream.path(".vsplit")));
+        ASSERT_FALSE(decoded.error.has_value()) << describe(*decoded.error);
+        ASSERT_TRUE(decoded.complete);
+        const std::string meshes = describe_meshes(decoded);
+        if (std::getenv("VSPLIT_UPDATE_GOLDEN") != nullptr)  // by scripts/update-golden
+        {
+            std::ofstream(stream.path(".txt")) << meshes;
+            continue;
+        }
+        EXPECT_EQ(meshes, read_text(stream.path(".txt")));
+    }
+}
+
+TEST(Golden, CoversWhatTheFormatOffers)
+{
+    std::size_t bytes = 0;
+    bool stitched = false;
+    bool open = false;
+    bool doubles = false;
+    bool shifted = false;
+    bool continued = false;
+    for (const GoldenStream& stream : golden_streams())
+    {
+        const Bytes file = read_source_file(stream.path(".vsplit"));
+        const auto info = codec::parse_stream_info(file).value();
+        EXPECT_EQ(info.major, proto::kStreamMajor) << stream.name;
+        EXPECT_EQ(info.minor, proto::kStreamMinor) << stream.name;
+        const Decoded decoded = decode(file);
+        bytes += file.size();
+        stitched = stitched || !decoded.stitches.empty();
+        open = open || info.face_count < 2 * (info.vertex_count - info.chunks[0].vertices);
+        doubles = doubles || (file[16] & std::byte{proto::kSinglePrecisionGrid}) == std::byte{0};
+        shifted = shifted || decoded.levels.front().shift > 0;
+        for (const codec::ChunkInfo& chunk : info.chunks)
+        {
+            continued = continued || !chunk.ends_level;
+        }
+    }
+    EXPECT_TRUE(stitched && open && doubles && shifted && continued)
+        << stitched << open << doubles << shifted << continued;
+    EXPECT_LT(bytes, 60000U);
+}
+
+}  // namespace
+}  // namespace vsplit::test
