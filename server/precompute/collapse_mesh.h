@@ -71,7 +71,8 @@ public:
     void collapse(std::uint32_t removed, const OneRing& ring, std::size_t kept);
 
     /// Tells whether folding the ring's centre into neighbour number `kept` keeps a manifold whose
-    /// vertices have at most `valence_limit` neighbours.
+    /// vertices have at most `valence_limit` neighbours. Precondition: on a boundary ring `kept` is the
+    /// first or the last neighbour.
     /// Source: Dey, Edelsbrunner, Guha, Nekhayev, "Topology Preserving Edge Contraction", 1999 (link
     /// condition).
     [[nodiscard]] bool can_collapse(
