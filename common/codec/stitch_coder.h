@@ -52,7 +52,9 @@ void code_stitch_group(
         }
         return;
     }
-    std::vector<std::uint32_t> representatives{group.front()};
+    std::vector<std::uint32_t> representatives;
+    representatives.reserve(group.size());
+    representatives.push_back(group.front());
     stitches[group.front()] = group.front();
     for (const std::uint32_t v : group.subspan(1))
     {

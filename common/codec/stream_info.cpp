@@ -84,8 +84,10 @@ std::uint64_t decoder_heap_bytes(const StreamInfo& info)
     std::uint64_t largest_level = 0;
     std::uint32_t previous = 0;
     std::uint32_t level_start = 0;
+    std::uint64_t stitched = 0;
     for (const ChunkInfo& chunk : info.chunks)
     {
+        stitched = chunk.kind == proto::ChunkKind::Stitch ? info.vertex_count : stitched;
         largest_chunk = std::max<std::uint64_t>(largest_chunk, chunk.bytes);
         largest_batch = std::max(largest_batch, chunk.vertices - previous);
         previous = chunk.vertices;
@@ -95,13 +97,15 @@ std::uint64_t decoder_heap_bytes(const StreamInfo& info)
             level_start = chunk.vertices;
         }
     }
-    // Per vertex: position and valence. Per face: connectivity and its new place. Per split of the
-    // largest level: its two new faces; of the largest batch: operation and triangle updates. The
-    // constants cover the tables, the index and Draco's own needs for the base mesh.
+    // Per vertex: position and valence; its stitch, its place in their order, one class of its own. Per
+    // face: connectivity and its new place. Per split of the largest level: its two new faces; of the
+    // largest batch: operation and triangle updates. The constants cover the tables, the index and
+    // Draco's own needs for the base mesh.
     constexpr std::uint64_t kFixed = 192U * 1024U;
-    const std::uint64_t base = info.chunks.front().vertices;
-    return kFixed + 17ULL * info.vertex_count + 36ULL * info.face_count + 64ULL * largest_level +
-           160ULL * largest_batch + largest_chunk + 512ULL * base +
+    const std::uint64_t base =
+        std::max(info.chunks.front().vertices, info.chunks.front().faces / 2);
+    return kFixed + 18ULL * info.vertex_count + 12ULL * stitched + 36ULL * info.face_count +
+           64ULL * largest_level + 160ULL * largest_batch + largest_chunk + 512ULL * base +
            sizeof(ChunkInfo) * info.chunks.size() * 2;
 }
 

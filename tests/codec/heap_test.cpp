@@ -1,0 +1,125 @@
+// The decoder promises what memory it needs before it takes any. This program counts every
+// allocation, so it has an executable of its own.
+
+#include "codec/encoded_samples.h"
+#include "codec/shapes.h"
+#include "codec/stream_decoder.h"
+#include "codec/stream_header_writer.h"
+#include "precompute/mesh_io.h"
+#include "tools/heap_meter.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace vsplit::test {
+namespace {
+
+/// Largest heap while a stream is fed and decoded, the bytes fed not counted.
+std::uint64_t peak_while_decoding(
+    std::span<const std::byte> file, const codec::DecodeLimits& limits = {}
+)
+{
+    tools::start_heap_meter();
+    {
+        codec::StreamDecoder decoder(limits);
+        while (!decoder.complete() && decoder.step())
+        {
+            const auto taken = decoder.feed(file);
+            if (!taken || (*taken == 0 && decoder.wanted_bytes() != 0))
+            {
+                break;
+            }
+            file = file.subspan(*taken);
+        }
+    }
+    return tools::stop_heap_meter();
+}
+
+void expect_within_promise(const EncodedSample& sample)
+{
+    EXPECT_LE(peak_while_decoding(sample.file), codec::decoder_heap_bytes(sample.info));
+    const auto levels = static_cast<std::uint32_t>(sample.info.levels.size());
+    for (std::uint32_t level = 0; level + 1 < levels; ++level)
+    {
+        const std::uint64_t promise =
+            codec::decoder_heap_bytes(codec::prefix_info(sample.info, level));
+        EXPECT_LE(peak_while_decoding(sample.file, {.max_level = level}), promise) << level;
+    }
+}
+
+TEST(DecoderHeap, StaysWithinItsPromiseForSmallMeshes)
+{
+    for (const NamedMesh& mesh : small_meshes())
+    {
+        SCOPED_TRACE(mesh.name);
+        expect_within_promise(encode(mesh.make()));
+    }
+}
+
+TEST(DecoderHeap, StaysWithinItsPromiseForTheAssets)
+{
+    for (const char* name : {"beast", "bracket", "terrain", "pair", "dirty"})
+    {
+        SCOPED_TRACE(name);
+        const std::string path = std::string(VSPLIT_SOURCE_DIR "/assets/") + name + ".ply";
+        expect_within_promise(encode(precompute::read_mesh(path).value()));
+    }
+}
+
+TEST(DecoderHeap, StaysWithinItsPromiseForLargeBases)
+{
+    const precompute::EncodeOptions options{
+        .metric = precompute::Metric::Qem, .base_vertices = 100000};
+    expect_within_promise(encode(torus(300, 200, 0.01, 1), options));
+    expect_within_promise(encode(height_field(200, 200, 0.3, 2), options));
+}
+
+TEST(DecoderHeap, StaysWithinItsPromiseWhereMuchIsStitched)
+{
+    // Large, so that what the promise adds for everything else does not hide the stitches.
+    const EncodedSample large =
+        encode(book(240), {.metric = precompute::Metric::Qem, .threads = 2});
+    EXPECT_LE(peak_while_decoding(large.file), codec::decoder_heap_bytes(large.info));
+    // Every square an island of its own whose corners repair leaves apart.
+    expect_within_promise(encode(with_holes(height_field(150, 150, 0.3, 2), 0.5, 3)));
+}
+
+TEST(DecoderHeap, IsNotTakenForAHeaderThatIsRefused)
+{
+    codec::StreamInfo info;
+    info.grid.bits = 12;
+    info.vertex_count = proto::kMaxVertices;
+    info.face_count = proto::kMaxVertices * 2 - 4;
+    info.chunks = {
+        {.bytes = 1000, .vertices = 1000, .faces = 1996},
+        {.bytes = 1U << 27, .vertices = info.vertex_count, .faces = info.face_count},
+    };
+    info.chunks[0].kind = proto::ChunkKind::Base;
+    Bytes file = codec::write_stream_header(info, {4095, 4095, 4095});
+    file.resize(file.size() + 2000);
+    for (const codec::DecodeLimits& limits : {
+             codec::DecodeLimits{.max_vertices = 1U << 24},
+             codec::DecodeLimits{.max_faces = 1U << 24},
+             codec::DecodeLimits{.max_chunk_bytes = 1U << 20},
+             codec::DecodeLimits{.max_heap_bytes = 1U << 28},
+             codec::DecodeLimits{.max_header_bytes = 20},
+         })
+    {
+        EXPECT_LT(peak_while_decoding(file, limits), 200000U);
+        EXPECT_EQ(decode(file, limits).error.value().code, ErrorCode::LimitExceeded);
+    }
+}
+
+TEST(DecoderHeap, GrowsOnlyWithTheBytesOfALongHeader)
+{
+    Bytes file = encode(tetrahedron()).file;
+    file.resize(20);
+    for (std::size_t i = 8; i < 12; ++i)
+    {
+        file[i] = i == 10 ? std::byte{0xFF} : std::byte{0};  // 16 MB
+    }
+    EXPECT_LT(peak_while_decoding(file), 200000U);
+}
+
+}  // namespace
+}  // namespace vsplit::test
