@@ -16,6 +16,10 @@ function(vsplit_target name)
             ${name} PRIVATE -fsanitize=${VSPLIT_SANITIZE} -fno-omit-frame-pointer -g
         )
         target_link_options(${name} PUBLIC -fsanitize=${VSPLIT_SANITIZE})
+        if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+            # In instrumented code GCC raises false alarms, also inside system headers.
+            target_compile_options(${name} PRIVATE -Wno-maybe-uninitialized)
+        endif()
         if(VSPLIT_SANITIZE MATCHES "undefined")
             target_compile_options(${name} PRIVATE -fno-sanitize-recover=undefined)
         endif()

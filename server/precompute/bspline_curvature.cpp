@@ -18,6 +18,7 @@
 #include "precompute/curvature.h"
 #include "precompute/local_fit.h"
 #include "precompute/parallel_ranges.h"
+#include "precompute/vertex_neighbourhood.h"
 
 #include <Eigen/Cholesky>
 
@@ -142,20 +143,18 @@ double bspline_fit(const LocalPatch& patch, const Matrix16& smoothing)
 
 }  // namespace
 
-std::vector<float> bspline_curvature(const IndexedMesh& mesh, unsigned threads)
+std::vector<float> bspline_curvature(const HalfEdgeMesh& mesh, unsigned threads)
 {
-    const auto vertex_count = static_cast<std::uint32_t>(mesh.positions.size());
+    const auto vertex_count = static_cast<std::uint32_t>(mesh.n_vertices());
     std::vector<float> curvature(vertex_count, 0.0F);
-    const OneRings rings(mesh);
     const auto normals = vertex_normals(mesh);
     const Matrix16 smoothing = third_difference_energy();
     parallel_ranges(vertex_count, threads, [&](std::uint32_t begin, std::uint32_t end) {
-        NeighbourhoodSearch search(mesh, rings);
+        NeighbourhoodSearch search(mesh);
         LocalPatch patch;
         for (std::uint32_t v = begin; v < end; ++v)
         {
-            const auto ring = rings[v];
-            if (ring.empty() || !make_patch(mesh, normals, v, ring[0], search.adaptive(v), patch))
+            if (!make_patch(mesh, normals, v, search.adaptive(v), patch))
             {
                 continue;
             }

@@ -98,11 +98,11 @@ std::vector<float> curvature_factors(std::vector<float> curvature)
     return curvature;
 }
 
-std::vector<float> paper_factors(const IndexedMesh& mesh, unsigned threads)
+std::vector<float> paper_factors(const HalfEdgeMesh& mesh, unsigned threads)
 {
     std::vector<float> curvature = bspline_curvature(mesh, threads);
-    const auto feature = feature_points(mesh, curvature);
-    const auto sparseness = sparseness_weights(mesh);
+    const auto feature = feature_points(mesh, curvature, {}, threads);
+    const auto sparseness = sparseness_weights(mesh, threads);
     for (std::size_t v = 0; v < curvature.size(); ++v)
     {
         const double factor = feature[v] != 0 ? kFeatureFactor : 1.0;
@@ -265,7 +265,7 @@ void CollapseCost::merge(std::uint32_t removed, std::uint32_t kept)
     }
 }
 
-std::vector<float> vertex_weights(const IndexedMesh& mesh, Metric metric, unsigned threads)
+std::vector<float> vertex_weights(const HalfEdgeMesh& mesh, Metric metric, unsigned threads)
 {
     switch (metric)
     {

@@ -2,6 +2,7 @@
 
 #include "mesh/indexed_mesh.h"
 #include "precompute/collapse_mesh.h"
+#include "precompute/half_edge_mesh.h"
 #include "precompute/metric.h"
 
 #include <array>
@@ -83,10 +84,11 @@ private:
 /// Computes the factors that a metric needs: for the curvature metrics 1 + C / (2 mean C), with C cut
 /// off at its 99.5th percentile; for the paper's own rule C times the sparseness weight, feature points
 /// counted a million times; nothing for the others.
-/// `mesh`: a repaired mesh, model units. Cost: that of the curvature.
+/// `mesh`: from make_half_edge_mesh(), model units; `threads`: at least 1; the result does not depend
+/// on it. Cost: that of the curvature.
 /// Source: Wang, Yang, "3D Models Simplification Algorithm for Mobile Devices", equations 17-19.
 [[nodiscard]] std::vector<float> vertex_weights(
-    const IndexedMesh& mesh, Metric metric, unsigned threads
+    const HalfEdgeMesh& mesh, Metric metric, unsigned threads
 );
 
 }  // namespace vsplit::precompute

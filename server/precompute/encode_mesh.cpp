@@ -3,6 +3,7 @@
 #include "codec/stream_encoder.h"
 #include "precompute/collapse_cost.h"
 #include "precompute/collapse_mesh.h"
+#include "precompute/half_edge_mesh.h"
 #include "precompute/level_builder.h"
 #include "precompute/level_errors.h"
 
@@ -203,6 +204,15 @@ Result<void> check_size(const IndexedMesh& mesh)
     return {};
 }
 
+/// Checks the mesh and finds what its metric needs. The half-edge mesh goes when this ends, before the
+/// stages that take the most memory.
+Result<std::vector<float>> find_weights(const IndexedMesh& mesh, const EncodeOptions& options)
+{
+    const auto linked = make_half_edge_mesh(mesh);
+    VSPLIT_TRY(linked);
+    return vertex_weights(*linked, options.metric, options.threads);
+}
+
 /// Ties the share done to the name of its stage.
 std::function<void(double)> stage_progress(const ProgressSink& progress, std::string_view stage)
 {
@@ -227,7 +237,8 @@ Result<EncodedMesh> encode_mesh(
     const auto begin = Clock::now();
     auto start = begin;
     EncodedMesh result;
-    auto weights = vertex_weights(mesh, options.metric, options.threads);
+    auto weights = find_weights(mesh, options);
+    VSPLIT_TRY(weights);
     result.seconds.metric = lap(start);
 
     const QuantizationGrid grid = make_grid(mesh.positions, options.position_bits);
@@ -236,7 +247,8 @@ Result<EncodedMesh> encode_mesh(
     std::ranges::transform(mesh.positions, exact.begin(), [&](const auto& point) {
         return (point - grid.origin) * (1.0 / grid.cell);
     });
-    Sequence sequence = make_sequence(mesh, exact, stitches, std::move(weights), options, progress);
+    Sequence sequence =
+        make_sequence(mesh, exact, stitches, std::move(*weights), options, progress);
     result.seconds.collapse = lap(start);
 
     order_levels(sequence);

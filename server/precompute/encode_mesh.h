@@ -51,7 +51,8 @@ struct EncodedMesh
 /// consistently oriented (what repair_mesh() returns); `stitches`: per vertex the representative of
 /// the source vertex it was cut from (as RepairedMesh::stitches), or empty; vertices that share one
 /// are never removed, so that no level cracks.
-/// Errors: EmptyMesh, InputTooLarge, Internal (the result failed its own check).
+/// Errors: EmptyMesh, InputTooLarge, BadIndex and UnsupportedInput (not such a mesh; see
+/// check_manifold()), Internal (the result failed its own check).
 /// Cost: about 30 microseconds and 500 bytes a vertex. Deterministic: the same input and options
 /// give the same bytes for any number of threads. Thread safe.
 [[nodiscard]] Result<EncodedMesh> encode_mesh(

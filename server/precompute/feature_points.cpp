@@ -13,8 +13,10 @@ namespace vsplit::precompute {
 
 namespace {
 
-double distance(const std::array<double, 3>& a, const std::array<double, 3>& b)
+double distance(const HalfEdgeMesh& mesh, std::uint32_t first, std::uint32_t second)
 {
+    const auto& a = mesh.point(vertex_handle(first));
+    const auto& b = mesh.point(vertex_handle(second));
     return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
@@ -31,19 +33,18 @@ double mean_of(const std::vector<double>& values)
 }  // namespace
 
 std::vector<std::uint8_t> feature_points(
-    const IndexedMesh& mesh,
+    const HalfEdgeMesh& mesh,
     const std::vector<float>& curvature,
     const FeatureOptions& options,
     unsigned threads
 )
 {
-    const auto vertex_count = static_cast<std::uint32_t>(mesh.positions.size());
+    const auto vertex_count = static_cast<std::uint32_t>(mesh.n_vertices());
     std::vector<std::uint8_t> features(vertex_count, 0);
-    const OneRings rings(mesh);
     const double floor =
         options.flat * mean_of(std::vector<double>(curvature.begin(), curvature.end()));
     parallel_ranges(vertex_count, threads, [&](std::uint32_t begin, std::uint32_t end) {
-        NeighbourhoodSearch search(mesh, rings);
+        NeighbourhoodSearch search(mesh);
         for (std::uint32_t v = begin; v < end; ++v)
         {
             const auto neighbours = search.adaptive(v);
@@ -61,20 +62,19 @@ std::vector<std::uint8_t> feature_points(
     return features;
 }
 
-std::vector<float> sparseness_weights(const IndexedMesh& mesh, unsigned threads)
+std::vector<float> sparseness_weights(const HalfEdgeMesh& mesh, unsigned threads)
 {
-    const auto vertex_count = static_cast<std::uint32_t>(mesh.positions.size());
+    const auto vertex_count = static_cast<std::uint32_t>(mesh.n_vertices());
     std::vector<double> spacing(vertex_count, 0.0);
-    const OneRings rings(mesh);
     parallel_ranges(vertex_count, threads, [&](std::uint32_t begin, std::uint32_t end) {
-        NeighbourhoodSearch search(mesh, rings);
+        NeighbourhoodSearch search(mesh);
         for (std::uint32_t v = begin; v < end; ++v)
         {
             const auto neighbours = search.adaptive(v);
             double sum = 0.0;
             for (const std::uint32_t neighbour : neighbours)
             {
-                sum += distance(mesh.positions[v], mesh.positions[neighbour]);
+                sum += distance(mesh, v, neighbour);
             }
             // eq. 18
             spacing[v] = sum / static_cast<double>(std::max<std::size_t>(1, neighbours.size()));

@@ -4,6 +4,8 @@
 // The equation numbers 10 to 16 are those of Wang, Yang; see bspline_curvature.cpp.
 #include "precompute/local_fit.h"
 
+#include "precompute/vertex_neighbourhood.h"
+
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
@@ -15,9 +17,9 @@ namespace vsplit::precompute {
 
 namespace {
 
-Eigen::Vector3d point_of(const IndexedMesh& mesh, std::uint32_t vertex)
+Eigen::Vector3d point_of(const HalfEdgeMesh& mesh, std::uint32_t vertex)
 {
-    return Eigen::Map<const Eigen::Vector3d>(mesh.positions[vertex].data());
+    return Eigen::Map<const Eigen::Vector3d>(mesh.point(vertex_handle(vertex)).data());
 }
 
 // A unit vector across `normal` that turns with the model, or any one if `direction` is along it.
@@ -35,11 +37,16 @@ Eigen::Vector3d tangent_towards(const Eigen::Vector3d& normal, const Eigen::Vect
 
 }  // namespace
 
-std::vector<Eigen::Vector3d> vertex_normals(const IndexedMesh& mesh)
+std::vector<Eigen::Vector3d> vertex_normals(const HalfEdgeMesh& mesh)
 {
-    std::vector<Eigen::Vector3d> normals(mesh.positions.size(), Eigen::Vector3d::Zero());
-    for (const auto& [a, b, c] : mesh.triangles)
+    std::vector<Eigen::Vector3d> normals(mesh.n_vertices(), Eigen::Vector3d::Zero());
+    for (const auto face : mesh.faces())
     {
+        std::array<std::uint32_t, 3> corners{};
+        std::transform(mesh.cfv_begin(face), mesh.cfv_end(face), corners.begin(), [](auto vertex) {
+            return static_cast<std::uint32_t>(vertex.idx());
+        });
+        const auto [a, b, c] = corners;
         const Eigen::Vector3d corner = point_of(mesh, a);
         const Eigen::Vector3d twice_area =
             (point_of(mesh, b) - corner).cross(point_of(mesh, c) - corner);
@@ -57,10 +64,9 @@ std::vector<Eigen::Vector3d> vertex_normals(const IndexedMesh& mesh)
 }
 
 bool make_patch(
-    const IndexedMesh& mesh,
+    const HalfEdgeMesh& mesh,
     const std::vector<Eigen::Vector3d>& normals,
     std::uint32_t vertex,
-    std::uint32_t towards,
     std::span<const std::uint32_t> neighbours,
     LocalPatch& patch
 )
@@ -79,7 +85,8 @@ bool make_patch(
     {
         return false;
     }
-    const Eigen::Vector3d x_axis = tangent_towards(normal, point_of(mesh, towards) - origin);
+    const Eigen::Vector3d towards = point_of(mesh, first_neighbour(mesh, vertex));
+    const Eigen::Vector3d x_axis = tangent_towards(normal, towards - origin);
     const Eigen::Vector3d y_axis = normal.cross(x_axis);
     const double scale = 1.0 / patch.radius;
     for (std::size_t i = 0; i < patch.point_count; ++i)

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "mesh/indexed_mesh.h"
-#include "precompute/vertex_neighbourhood.h"
+#include "precompute/half_edge_mesh.h"
 
 #include <Eigen/Core>
 
@@ -25,18 +24,17 @@ struct LocalPatch
 
 /// Returns the normal of every vertex: the area-weighted mean of its triangles' normals, unit length,
 /// or zero where the triangles are degenerate or cancel.
-/// `mesh`: any triangles, indices in range. Cost: linear.
-[[nodiscard]] std::vector<Eigen::Vector3d> vertex_normals(const IndexedMesh& mesh);
+/// Cost: linear.
+[[nodiscard]] std::vector<Eigen::Vector3d> vertex_normals(const HalfEdgeMesh& mesh);
 
 /// Expresses `neighbours` (at most LocalPatch::kMostPoints) in the frame of `vertex`.
-/// `towards`: the vertex whose projection gives the x axis, so that the frame turns with the model
-/// (any other axis is taken where it lies along the normal). Result: false, with `patch` undefined,
-/// where there is no frame (no normal, coincident points, overflow).
+/// The x axis points to the projection of the vertex's first neighbour, so that the frame turns with
+/// the model (any other axis is taken where that lies along the normal). Result: false, with `patch`
+/// undefined, where there is no frame (no normal, coincident points, overflow).
 [[nodiscard]] bool make_patch(
-    const IndexedMesh& mesh,
+    const HalfEdgeMesh& mesh,
     const std::vector<Eigen::Vector3d>& normals,
     std::uint32_t vertex,
-    std::uint32_t towards,
     std::span<const std::uint32_t> neighbours,
     LocalPatch& patch
 );

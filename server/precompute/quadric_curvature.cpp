@@ -4,6 +4,7 @@
 #include "precompute/curvature.h"
 #include "precompute/local_fit.h"
 #include "precompute/parallel_ranges.h"
+#include "precompute/vertex_neighbourhood.h"
 
 namespace vsplit::precompute {
 
@@ -13,20 +14,17 @@ constexpr std::size_t kMostFitted = 24;
 
 }  // namespace
 
-std::vector<float> quadric_curvature(const IndexedMesh& mesh, unsigned threads)
+std::vector<float> quadric_curvature(const HalfEdgeMesh& mesh, unsigned threads)
 {
-    const auto vertex_count = static_cast<std::uint32_t>(mesh.positions.size());
+    const auto vertex_count = static_cast<std::uint32_t>(mesh.n_vertices());
     std::vector<float> curvature(vertex_count, 0.0F);
-    const OneRings rings(mesh);
     const auto normals = vertex_normals(mesh);
     parallel_ranges(vertex_count, threads, [&](std::uint32_t begin, std::uint32_t end) {
-        NeighbourhoodSearch search(mesh, rings);
+        NeighbourhoodSearch search(mesh);
         LocalPatch patch;
         for (std::uint32_t v = begin; v < end; ++v)
         {
-            const auto ring = rings[v];
-            if (!ring.empty() &&
-                make_patch(mesh, normals, v, ring[0], search.two_ring(v, kMostFitted), patch))
+            if (make_patch(mesh, normals, v, search.two_ring(v, kMostFitted), patch))
             {
                 curvature[v] = to_curvature(quadric_fit(patch), patch.radius);
             }

@@ -1,11 +1,11 @@
 #include "precompute/repair.h"
 
 #include "format.h"
+#include "precompute/half_edge_mesh.h"
 #include "precompute/mesh_builder.h"
 #include "precompute/repair_steps.h"
 
 #include <algorithm>
-#include <numeric>
 #include <string>
 #include <utility>
 
@@ -50,43 +50,6 @@ void turn_faces(std::vector<Triangle>& triangles, const std::vector<std::uint8_t
     }
 }
 
-/// Counts the sets of vertices that edges connect.
-std::uint32_t count_components(const IndexedMesh& mesh)
-{
-    std::vector<std::uint32_t> parents(mesh.positions.size());
-    std::iota(parents.begin(), parents.end(), std::uint32_t{0});
-    const auto find = [&](std::uint32_t vertex) {
-        while (parents[vertex] != vertex)
-        {
-            parents[vertex] = parents[parents[vertex]];
-            vertex = parents[vertex];
-        }
-        return vertex;
-    };
-    auto components = static_cast<std::uint32_t>(mesh.positions.size());
-    for (const auto& [a, b, c] : mesh.triangles)
-    {
-        for (const std::uint32_t vertex : {b, c})
-        {
-            const std::uint32_t first = find(a);
-            const std::uint32_t second = find(vertex);
-            components -= first != second ? 1 : 0;
-            parents[std::max(first, second)] = std::min(first, second);
-        }
-    }
-    return components;
-}
-
-std::uint32_t count_boundary_edges(const IndexedMesh& mesh)
-{
-    std::uint32_t count = 0;
-    const EdgeTable edges(mesh.triangles, mesh.positions.size());
-    edges.for_each_edge([&](std::span<const HalfEdge> halves) {
-        count += halves.size() == 1 ? 1 : 0;
-    });
-    return count;
-}
-
 }  // namespace
 
 bool RepairReport::clean() const
@@ -108,8 +71,17 @@ Result<RepairedMesh> repair_mesh(const IndexedMesh& mesh)
     const Orientation orientation = orient_faces(result.mesh, result.report);
     result.stitches = split_fans(result.mesh, orientation, result.report);
     turn_faces(result.mesh.triangles, orientation.reversed);
-    result.components = count_components(result.mesh);
-    result.boundary_edges = count_boundary_edges(result.mesh);
+    const auto linked = make_half_edge_mesh(result.mesh);
+    if (!linked)
+    {
+        const auto& [code, message, offset] = linked.error();
+        return fail(
+            code == ErrorCode::InputTooLarge ? code : ErrorCode::Internal,
+            "repair failed: " + message
+        );
+    }
+    result.components = component_count(*linked);
+    result.boundary_edges = boundary_edge_count(*linked);
     return result;
 }
 

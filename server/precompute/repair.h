@@ -40,7 +40,8 @@ struct RepairedMesh
 /// duplicate faces and isolated vertices, orients by flood fill (keeping the majority's direction in
 /// each component), cuts non-manifold edges and vertices into fans.
 /// `mesh`: any triangles, model units. Order of vertices and triangles is kept where they survive.
-/// Errors: EmptyMesh when no triangle is left, BadCoordinate, BadIndex.
+/// Errors: EmptyMesh when no triangle is left, BadCoordinate, BadIndex, InputTooLarge, Internal (the
+/// result failed its own check).
 /// Cost: linear but for one sort. Deterministic. Thread safe. Safe on untrusted input.
 [[nodiscard]] Result<RepairedMesh> repair_mesh(const IndexedMesh& mesh);
 

@@ -9,8 +9,8 @@ namespace vsplit::precompute {
 /// oriented. Every vertex is used, no triangle repeats a vertex, every directed edge occurs at most
 /// once, and the triangles around every vertex form one fan.
 /// `mesh`: any mesh; positions do not matter. Result: nothing when all holds.
-/// Errors: EmptyMesh, BadIndex, UnsupportedInput (with the offending vertex or face).
-/// Cost: linear plus one sort within each vertex. Thread safe. Safe on untrusted input.
+/// Errors: EmptyMesh, BadIndex, InputTooLarge, UnsupportedInput (with the offending vertex or face).
+/// Cost: that of make_half_edge_mesh(), which finds out. Thread safe. Safe on untrusted input.
 [[nodiscard]] Result<void> check_manifold(const IndexedMesh& mesh);
 
 }  // namespace vsplit::precompute

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace vsplit::precompute {
 
@@ -25,49 +26,18 @@ constexpr std::size_t kMostVisited = 512;
 
 }  // namespace
 
-OneRings::OneRings(const IndexedMesh& mesh)
+std::uint32_t first_neighbour(const HalfEdgeMesh& mesh, std::uint32_t vertex)
 {
-    const std::size_t vertex_count = mesh.positions.size();
-    std::vector<std::size_t> ends(vertex_count + 1, 0);
-    for (const Triangle& triangle : mesh.triangles)
+    int first = std::numeric_limits<int>::max();
+    for (const auto neighbour : mesh.vv_range(vertex_handle(vertex)))
     {
-        for (const std::uint32_t vertex : triangle)
-        {
-            ends[vertex + 1] += 2;
-        }
+        first = std::min(first, neighbour.idx());
     }
-    for (std::size_t v = 0; v < vertex_count; ++v)
-    {
-        ends[v + 1] += ends[v];
-    }
-    std::vector<std::uint32_t> twice(ends.back());  // each inner edge twice, sorted out below
-    std::vector<std::size_t> next(ends.begin(), ends.end() - 1);
-    for (const auto& [a, b, c] : mesh.triangles)
-    {
-        twice[next[a]++] = b;
-        twice[next[a]++] = c;
-        twice[next[b]++] = c;
-        twice[next[b]++] = a;
-        twice[next[c]++] = a;
-        twice[next[c]++] = b;
-    }
-    offsets_.assign(vertex_count + 1, 0);
-    neighbours_.reserve(twice.size() / 2 + 16);
-    for (std::size_t v = 0; v < vertex_count; ++v)
-    {
-        const auto first = twice.begin() + static_cast<std::ptrdiff_t>(ends[v]);
-        const auto last = twice.begin() + static_cast<std::ptrdiff_t>(ends[v + 1]);
-        std::sort(first, last);
-        const auto unique_last = std::unique(first, last);
-        std::copy_if(first, unique_last, std::back_inserter(neighbours_), [v](std::uint32_t w) {
-            return w != v;
-        });
-        offsets_[v + 1] = neighbours_.size();
-    }
+    return static_cast<std::uint32_t>(first);
 }
 
-NeighbourhoodSearch::NeighbourhoodSearch(const IndexedMesh& mesh, const OneRings& rings)
-    : mesh_(mesh), rings_(rings), visited_(mesh.positions.size(), 0)
+NeighbourhoodSearch::NeighbourhoodSearch(const HalfEdgeMesh& mesh)
+    : mesh_(mesh), visited_(mesh.n_vertices(), 0)
 {
 }
 
@@ -86,28 +56,35 @@ void NeighbourhoodSearch::grow(std::uint32_t vertex, std::size_t enough, int mos
         const std::size_t ring_end = found_.size();
         for (; ring_begin < ring_end; ++ring_begin)
         {
-            const auto neighbours = rings_[found_[ring_begin]];
-            const std::size_t room = kMostVisited - found_.size();
-            for (const std::uint32_t neighbour :
-                 neighbours.first(std::min(neighbours.size(), room)))
-            {
-                if (visited_[neighbour] != stamp_)
-                {
-                    visited_[neighbour] = stamp_;
-                    found_.push_back(neighbour);
-                }
-            }
+            append_ring(found_[ring_begin]);
+        }
+    }
+}
+
+void NeighbourhoodSearch::append_ring(std::uint32_t vertex)
+{
+    for (const auto handle : mesh_.vv_range(vertex_handle(vertex)))
+    {
+        const auto neighbour = static_cast<std::uint32_t>(handle.idx());
+        if (found_.size() > kMostVisited)
+        {
+            return;
+        }
+        if (visited_[neighbour] != stamp_)
+        {
+            visited_[neighbour] = stamp_;
+            found_.push_back(neighbour);
         }
     }
 }
 
 void NeighbourhoodSearch::measure(std::uint32_t vertex)
 {
-    const auto& centre = mesh_.positions[vertex];
+    const auto& centre = mesh_.point(vertex_handle(vertex));
     candidates_.clear();
     for (std::size_t i = 1; i < found_.size(); ++i)
     {
-        const auto& point = mesh_.positions[found_[i]];
+        const auto& point = mesh_.point(vertex_handle(found_[i]));
         const double dx = point[0] - centre[0];
         const double dy = point[1] - centre[1];
         const double dz = point[2] - centre[2];

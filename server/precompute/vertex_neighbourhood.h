@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mesh/indexed_mesh.h"
+#include "precompute/half_edge_mesh.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -9,26 +9,9 @@
 
 namespace vsplit::precompute {
 
-/// The one-ring of every vertex: all vertices that share an edge with it, in ascending order.
-/// Immutable once built, so queries are thread safe.
-class OneRings
-{
-public:
-    /// Builds all rings. `mesh`: any triangles, also non-manifold or degenerate ones; indices in
-    /// range. Cost: linear, about 150 ns a vertex; 32 bytes a vertex of a closed mesh.
-    explicit OneRings(const IndexedMesh& mesh);
-
-    /// The ring of `vertex`; empty for an isolated vertex. Valid as long as this object.
-    [[nodiscard]] std::span<const std::uint32_t> operator[](std::uint32_t vertex) const
-    {
-        return std::span(neighbours_)
-            .subspan(offsets_[vertex], offsets_[vertex + 1] - offsets_[vertex]);
-    }
-
-private:
-    std::vector<std::size_t> offsets_;  // V + 1
-    std::vector<std::uint32_t> neighbours_;
-};
+/// Returns the neighbour of `vertex` with the smallest index. Precondition: a mesh from
+/// make_half_edge_mesh(), in which every vertex has neighbours. Cost: the valence. Thread safe.
+[[nodiscard]] std::uint32_t first_neighbour(const HalfEdgeMesh& mesh, std::uint32_t vertex);
 
 /// Finds vertices near a vertex by growing rings over the surface, so that points of another sheet
 /// that is near in space but far along the surface never take part. Keeps scratch memory (4 bytes a
@@ -36,8 +19,8 @@ private:
 class NeighbourhoodSearch
 {
 public:
-    /// `mesh` and its `rings` must outlive the search.
-    NeighbourhoodSearch(const IndexedMesh& mesh, const OneRings& rings);
+    /// `mesh`: from make_half_edge_mesh(); must outlive the search.
+    explicit NeighbourhoodSearch(const HalfEdgeMesh& mesh);
 
     /// Returns the two-ring of `vertex` without the vertex, or its `limit` nearest members where it
     /// is larger. Valid until the next query. Cost: about the size of the two-ring.
@@ -61,10 +44,10 @@ private:
     };
 
     void grow(std::uint32_t vertex, std::size_t enough, int most_rings);
+    void append_ring(std::uint32_t vertex);
     void measure(std::uint32_t vertex);
 
-    const IndexedMesh& mesh_;
-    const OneRings& rings_;
+    const HalfEdgeMesh& mesh_;
     std::vector<std::uint32_t> visited_;  // the stamp of the query that last saw the vertex
     std::uint32_t stamp_ = 0;
     std::vector<std::uint32_t> found_;  // the centre, then ring after ring

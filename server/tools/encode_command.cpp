@@ -3,7 +3,6 @@
 #include "precompute/encode_mesh.h"
 #include "precompute/mesh_io.h"
 #include "precompute/repair.h"
-#include "precompute/validate.h"
 #include "progress_bar.h"
 #include "report.h"
 
@@ -146,7 +145,7 @@ void print_outcome(const EncodeArguments& arguments, const EncodeOutcome& outcom
     );
 }
 
-/// Reads and repairs the input; the encoder gets nothing that was not checked.
+/// Reads and repairs the input.
 Result<void> load(const EncodeArguments& arguments, EncodeOutcome& outcome)
 {
     Stopwatch watch;
@@ -163,9 +162,8 @@ Result<void> load(const EncodeArguments& arguments, EncodeOutcome& outcome)
         return tl::unexpected<Error>(error);
     }
     outcome.repaired = std::move(*repaired);
-    const auto manifold = precompute::check_manifold(outcome.repaired.mesh);
     outcome.seconds.repair = watch.lap();
-    return manifold ? Result<void>{} : fail(ErrorCode::Internal, manifold.error().message);
+    return {};
 }
 
 /// Encodes what load() left and writes the stream.

@@ -1,9 +1,10 @@
-# The fuzz preset does not build the server; this much of it needs no library and no files.
-vsplit_fuzzer(mesh_import_fuzzer mesh_import_fuzzer.cpp vsplit_mesh)
+# The fuzz preset does not build the server; this much of it needs no other library and no files.
+find_package(OpenMesh CONFIG REQUIRED)
+vsplit_fuzzer(mesh_import_fuzzer mesh_import_fuzzer.cpp vsplit_mesh OpenMeshCore)
 foreach(
     source
-    edge_table mesh_builder ply_header read_obj read_off read_ply read_stl repair repair_orient
-    repair_split repair_weld text_scan validate
+    edge_table half_edge_mesh mesh_builder ply_header read_obj read_off read_ply read_stl repair
+    repair_orient repair_split repair_weld text_scan validate
 )
     target_sources(
         mesh_import_fuzzer PRIVATE ${PROJECT_SOURCE_DIR}/server/precompute/${source}.cpp

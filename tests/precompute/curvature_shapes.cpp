@@ -101,6 +101,11 @@ IndexedMesh make_sphere(double radius, int levels)
     return mesh;
 }
 
+precompute::HalfEdgeMesh link(const IndexedMesh& mesh)
+{
+    return precompute::make_half_edge_mesh(mesh).value();
+}
+
 IndexedMesh moved(const IndexedMesh& mesh, double scale, const std::array<double, 3>& translation)
 {
     const double angle = 40.0 * std::numbers::pi / 180.0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mesh/indexed_mesh.h"
+#include "precompute/half_edge_mesh.h"
 
 #include <array>
 #include <cstdint>
@@ -32,6 +33,9 @@ struct Closing
 /// An icosahedron subdivided `levels` times and projected on the sphere of that radius round the
 /// origin: 10 * 4^levels + 2 vertices.
 [[nodiscard]] IndexedMesh make_sphere(double radius, int levels);
+
+/// The half-edge mesh of a manifold; throws for anything else.
+[[nodiscard]] precompute::HalfEdgeMesh link(const IndexedMesh& mesh);
 
 /// The rotation about the axis (1, 2, 3) by 40 degrees, then a scaling, then a translation.
 [[nodiscard]] IndexedMesh moved(

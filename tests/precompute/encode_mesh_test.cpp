@@ -136,6 +136,39 @@ TEST(EncodeMesh, RefusesAMeshWithoutTriangles)
     EXPECT_EQ(encoded.error().code, ErrorCode::EmptyMesh);
 }
 
+TEST(EncodeMesh, SaysWhyItRefusesAMeshThatIsNoManifold)
+{
+    const IndexedMesh whole = torus(9, 8, 0.0, 1);
+    IndexedMesh mesh = whole;
+    std::swap(mesh.triangles[7][0], mesh.triangles[7][1]);
+    for (const auto& [metric, name] : precompute::kMetricNames)
+    {
+        const auto encoded = precompute::encode_mesh(mesh, {}, {.metric = metric});
+        ASSERT_FALSE(encoded.has_value()) << name;
+        EXPECT_EQ(encoded.error().code, ErrorCode::UnsupportedInput) << name;
+        EXPECT_THAT(encoded.error().message, ::testing::HasSubstr("opposite direction")) << name;
+    }
+    mesh = whole;
+    mesh.positions.push_back({2, 2, 2});
+    const auto encoded = precompute::encode_mesh(mesh, {}, {});
+    ASSERT_FALSE(encoded.has_value());
+    EXPECT_THAT(encoded.error().message, ::testing::HasSubstr("no face uses vertex 72"));
+    mesh.triangles.push_back({0, 1, 73});
+    EXPECT_EQ(precompute::encode_mesh(mesh, {}, {}).error().code, ErrorCode::BadIndex);
+}
+
+TEST(EncodeMesh, GivesTheSameBytesForAnyNumberOfThreads)
+{
+    const IndexedMesh mesh = torus(60, 50, 0.02, 1);
+    for (const auto& [metric, name] : precompute::kMetricNames)
+    {
+        const auto one = precompute::encode_mesh(mesh, {}, {.metric = metric, .threads = 1});
+        const auto two = precompute::encode_mesh(mesh, {}, {.metric = metric, .threads = 2});
+        ASSERT_TRUE(one.has_value() && two.has_value()) << name;
+        EXPECT_EQ(one->file, two->file) << name;
+    }
+}
+
 TEST(EncodeMesh, TellsItsProgress)
 {
     std::vector<std::string> stages;
