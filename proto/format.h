@@ -19,6 +19,7 @@ inline constexpr int kMaxPositionBits = 20;
 inline constexpr std::uint32_t kMaxVertices = 1U << 28;
 inline constexpr std::uint32_t kMaxFaces = (1U << 29) - 2;
 inline constexpr std::uint32_t kMaxChunks = 1U << 20;
+inline constexpr std::uint32_t kMaxLevels = 1024;
 inline constexpr std::uint32_t kMaxHeaderBytes = 1U << 24;
 
 /// Chunks are cut so that they stay near this size; a reader accepts larger ones within its limits.

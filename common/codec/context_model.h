@@ -71,7 +71,7 @@ namespace detail {
     return table;
 }
 
-/// adaptation[n] = min(65535, floor(655360 / (10 n + 16))): the weight of the n-th observation.
+/// adaptation[n] = floor(655360 / (10 n + 16)): the weight of the n-th observation, 1/65536.
 [[nodiscard]] constexpr std::array<std::uint16_t, 128> make_adaptation()
 {
     std::array<std::uint16_t, 128> table{};

@@ -39,7 +39,7 @@ public:
         return value;
     }
 
-    /// Takes the low `count` (0 .. 24) bits of `value` as they are; returns them.
+    /// Takes the low `count` (0 .. 32) bits of `value` as they are; returns them.
     std::uint32_t raw(std::uint32_t value, int count);
 
     /// Appends the chunk's bytes to `out` and forgets its bits. Precondition: none. Layout: length of
@@ -54,7 +54,7 @@ private:
 };
 
 /// Reads the bits of one chunk in the order in which BitEncoder took them. Reading past the end
-/// yields zeros and is reported by finish(). Not thread safe. Safe on untrusted input.
+/// yields arbitrary bits and is reported by finish(). Not thread safe. Safe on untrusted input.
 class BitDecoder
 {
 public:
@@ -70,7 +70,7 @@ public:
         return draco::rabs_desc_read(&ans_, zero_probability(one_probability)) != 0;
     }
 
-    /// Reads `count` (0 .. 24) raw bits.
+    /// Reads `count` (0 .. 32) raw bits.
     std::uint32_t raw(std::uint32_t /*value*/, int count)
     {
         while (pending_bits_ < count)

@@ -1,9 +1,13 @@
 #pragma once
 
 #include <bit>
+#include <cfloat>
 #include <cstdint>
 
 namespace vsplit::codec {
+
+// Every operation must be rounded to binary32 at once; x87 registers would give other meshes.
+static_assert(FLT_EVAL_METHOD == 0, "compile for a target that evaluates float as float");
 
 /// A piecewise linear logarithm: 2^kStepsLog2 * log2(value), read off the bits of an IEEE-754 binary32,
 /// rounded down; exact at powers of two and at most 0.09 octaves low between them.

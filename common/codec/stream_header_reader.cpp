@@ -284,6 +284,10 @@ Result<void> collect_levels(StreamInfo& info)
     {
         return fail(ErrorCode::BadHeader, "the last level is never completed");
     }
+    if (info.levels.size() > proto::kMaxLevels)
+    {
+        return fail(ErrorCode::BadHeader, "the index lists too many levels");
+    }
     // Optional chunks behind the last level belong to it.
     info.levels.back().chunk_bytes += level.chunk_bytes;
     info.levels.back().cumulative_bytes = info.file_bytes;

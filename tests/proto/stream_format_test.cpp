@@ -94,6 +94,7 @@ TEST(StreamFormatDocument, GivesTheConstantsOfTheCode)
         {"kMaxVertices", kMaxVertices},
         {"kMaxFaces", kMaxFaces},
         {"kMaxChunks", kMaxChunks},
+        {"kMaxLevels", kMaxLevels},
         {"kMaxHeaderBytes", kMaxHeaderBytes},
         {"kTargetChunkBytes", kTargetChunkBytes},
         {"kChunkChecksumBytes", kChunkChecksumBytes},
