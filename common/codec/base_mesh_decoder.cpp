@@ -1,17 +1,21 @@
 #include "codec/base_mesh_decoder.h"
 
+#include "codec/base_mesh_tables.h"
 #include "core/byte_reader.h"
 
-#include <draco/compression/decode.h>
+#include <draco/compression/config/decoder_options.h>
+#include <draco/compression/mesh/mesh_edgebreaker_decoder.h>
+#include <draco/compression/mesh/mesh_sequential_decoder.h>
 #include <draco/mesh/mesh.h>
 
-#include <memory>
-#include <utility>
+#include <algorithm>
+#include <array>
 
 namespace vsplit::codec {
 namespace {
 
 constexpr std::size_t kDracoMagicBytes = 5;
+constexpr std::size_t kMethodOffset = 8;
 constexpr std::uint8_t kDracoMesh = 1;
 constexpr std::uint8_t kDracoSequential = 0;
 constexpr std::uint8_t kDracoEdgebreaker = 1;
@@ -20,6 +24,71 @@ tl::unexpected<Error> bad_base()
 {
     return fail(ErrorCode::BadChunk, "the base mesh does not decode");
 }
+
+/// How Draco describes the one attribute of a base mesh: positions, three 32-bit integers, under number
+/// 0, coded as integers.
+constexpr std::array<std::uint8_t, 7> kPositions{
+    1,
+    draco::GeometryAttribute::POSITION,
+    draco::DT_INT32,
+    3,
+    0,
+    0,
+    draco::SEQUENTIAL_ATTRIBUTE_ENCODER_INTEGER};
+
+/// Compares the entropy coder's tables that are announced with the largest that our encoder makes.
+bool fits(ByteReader& reader, const BaseMeshTables& tables)
+{
+    const auto prediction = static_cast<std::int8_t>(reader.read<std::uint8_t>().value_or(0));
+    if (prediction != draco::PREDICTION_NONE && !reader.read<std::uint8_t>())
+    {
+        return false;
+    }
+    const auto compressed = reader.read<std::uint8_t>();
+    if (!compressed || *compressed == 0)
+    {
+        return compressed.has_value();
+    }
+    constexpr std::uint32_t kTags = 32;
+    const auto scheme = reader.read<std::uint8_t>();
+    const bool tagged = scheme && *scheme == draco::SYMBOL_CODING_TAGGED;
+    const auto symbol_bits = tagged ? Result<std::uint8_t>(0) : reader.read<std::uint8_t>();
+    const auto symbols = reader.read_varint();
+    return symbol_bits && symbols && *symbol_bits <= tables.symbol_bits &&
+           *symbols <= (tagged ? kTags : tables.symbols);
+}
+
+/// One of Draco's mesh decoders, made to look at what is said of the attributes before it takes memory
+/// for them: a few bytes could ask for any number of attributes of 2 kB a vertex, and for megabytes of
+/// tables. `kGroupBytes`: bytes that the method uses to describe a group of attributes.
+template <typename DracoDecoder, std::size_t kGroupBytes>
+class PositionDecoder final : public DracoDecoder
+{
+public:
+    explicit PositionDecoder(const BaseMeshTables& tables) : tables_(tables) {}
+
+protected:
+    bool DecodePointAttributes() override
+    {
+        const draco::DecoderBuffer& buffer = *this->buffer();
+        ByteReader reader(std::as_bytes(
+            std::span(buffer.data_head(), static_cast<std::size_t>(buffer.remaining_size()))
+        ));
+        const auto groups = reader.read<std::uint8_t>();
+        const auto group = reader.read_bytes(kGroupBytes);
+        const auto attribute = reader.read_bytes(kPositions.size());
+        return groups && *groups == 1 && group && attribute &&
+               std::ranges::equal(*attribute, std::as_bytes(std::span(kPositions))) &&
+               fits(reader, tables_) && DracoDecoder::DecodePointAttributes();
+    }
+
+private:
+    BaseMeshTables tables_;
+};
+
+/// A group belongs to attribute data, has a kind and a traversal.
+using EdgebreakerDecoder = PositionDecoder<draco::MeshEdgebreakerDecoder, 3>;
+using SequentialDecoder = PositionDecoder<draco::MeshSequentialDecoder, 0>;
 
 /// Reads the counts at the head of a Draco mesh stream, version 2.2, and compares them, because Draco
 /// allocates for them before it finds out that the data are too short.
@@ -102,20 +171,27 @@ Result<GridMesh> copy_mesh(const draco::Mesh& mesh, std::uint32_t vertices, std:
 }  // namespace
 
 Result<GridMesh> decode_base_mesh(
-    std::span<const std::byte> bytes, std::uint32_t vertices, std::uint32_t faces
+    std::span<const std::byte> bytes,
+    std::uint32_t vertices,
+    std::uint32_t faces,
+    std::uint32_t max_index
 )
 {
     VSPLIT_TRY(check_draco_counts(bytes, vertices, faces));
     draco::DecoderBuffer buffer;
     buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    draco::Decoder decoder;
-    auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
-    if (!decoded.ok() || buffer.remaining_size() != 0)
+    const draco::DecoderOptions options;
+    draco::Mesh mesh;
+    const bool edgebreaker = bytes[kMethodOffset] == std::byte{kDracoEdgebreaker};
+    const auto tables = BaseMeshTables::of(vertices, max_index);
+    const draco::Status status = edgebreaker
+                                     ? EdgebreakerDecoder(tables).Decode(options, &buffer, &mesh)
+                                     : SequentialDecoder(tables).Decode(options, &buffer, &mesh);
+    if (!status.ok() || buffer.remaining_size() != 0)
     {
         return bad_base();
     }
-    const std::unique_ptr<draco::Mesh> mesh = std::move(decoded).value();
-    return copy_mesh(*mesh, vertices, faces);
+    return copy_mesh(mesh, vertices, faces);
 }
 
 }  // namespace vsplit::codec

@@ -10,12 +10,16 @@
 namespace vsplit::codec {
 
 /// Decodes the Draco mesh of a base chunk.
-/// `bytes`: the Draco stream; `vertices`, `faces`: the counts that the index promises; the stream's own
-/// counts are compared with them before Draco may allocate. Result: grid positions and triangles in
-/// Draco's order. Error: BadChunk. Safe on untrusted input as far as Draco is; checksums are verified
-/// before.
+/// `bytes`: the Draco stream, to its end; `vertices`, `faces`: the counts that the index promises;
+/// `max_index`: the largest coordinate on the base's grid. The stream's own counts, its attributes and
+/// its entropy coder's tables are compared with what they may be before Draco takes memory for them.
+/// Result: positions, which may still lie outside the grid, and triangles in Draco's order.
+/// Error: BadChunk. Safe on untrusted input as far as Draco is; checksums are verified before.
 [[nodiscard]] Result<GridMesh> decode_base_mesh(
-    std::span<const std::byte> bytes, std::uint32_t vertices, std::uint32_t faces
+    std::span<const std::byte> bytes,
+    std::uint32_t vertices,
+    std::uint32_t faces,
+    std::uint32_t max_index
 );
 
 }  // namespace vsplit::codec

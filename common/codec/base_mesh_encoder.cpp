@@ -225,10 +225,16 @@ Result<EncodedBase> encode_and_match(const GridMesh& base, bool edgebreaker)
     auto bytes = encode_with_draco(base, edgebreaker);
     VSPLIT_TRY(bytes);
     EncodedBase result{.bytes = std::move(*bytes), .decoded = {}, .vertices = {}};
+    std::int32_t max_index = 0;
+    for (const auto& position : base.positions)
+    {
+        max_index = std::max(max_index, std::ranges::max(position));
+    }
     auto decoded = decode_base_mesh(
         result.bytes,
         static_cast<std::uint32_t>(base.positions.size()),
-        static_cast<std::uint32_t>(base.triangles.size())
+        static_cast<std::uint32_t>(base.triangles.size()),
+        static_cast<std::uint32_t>(max_index)
     );
     VSPLIT_TRY(decoded);
     result.decoded = std::move(*decoded);

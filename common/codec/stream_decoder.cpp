@@ -190,9 +190,11 @@ private:
         {
             return fail(ErrorCode::BadChunk, "the base chunk is malformed");
         }
-        const auto base = decode_base_mesh(bytes.subspan(1), chunk.vertices, chunk.faces);
-        VSPLIT_TRY(base);
         state_.shift = static_cast<int>(bytes[0]);
+        const auto max_index = static_cast<std::uint32_t>(state_.max_index());
+        const auto base =
+            decode_base_mesh(bytes.subspan(1), chunk.vertices, chunk.faces, max_index);
+        VSPLIT_TRY(base);
         VSPLIT_TRY(state_.mesh.set_base(*base, state_.max_index()));
         for (std::uint32_t f = 0; f < chunk.faces; ++f)
         {

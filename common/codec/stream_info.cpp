@@ -1,5 +1,6 @@
 #include "codec/stream_info.h"
 
+#include "codec/base_mesh_tables.h"
 #include "core/crc32c.h"
 
 #include <algorithm>
@@ -99,14 +100,15 @@ std::uint64_t decoder_heap_bytes(const StreamInfo& info)
     }
     // Per vertex: position and valence; its stitch, its place in their order, one class of its own. Per
     // face: connectivity and its new place. Per split of the largest level: its two new faces; of the
-    // largest batch: operation and triangle updates. The constants cover the tables, the index and
-    // Draco's own needs for the base mesh.
-    constexpr std::uint64_t kFixed = 192U * 1024U;
-    const std::uint64_t base =
-        std::max(info.chunks.front().vertices, info.chunks.front().faces / 2);
-    return kFixed + 18ULL * info.vertex_count + 12ULL * stitched + 36ULL * info.face_count +
-           64ULL * largest_level + 160ULL * largest_batch + largest_chunk + 512ULL * base +
-           sizeof(ChunkInfo) * info.chunks.size() * 2;
+    // largest batch: operation and triangle updates. Per vertex of the base what Draco needs besides
+    // the tables of its entropy coder. The constant covers the learned model and small things.
+    constexpr std::uint64_t kFixed = 128U * 1024U;
+    const ChunkInfo& base = info.chunks.front();
+    const auto max_index = static_cast<std::uint32_t>(info.grid.max_index());
+    return kFixed + BaseMeshTables::of(base.vertices, max_index).heap_bytes() +
+           512ULL * std::max(base.vertices, base.faces / 2) + 18ULL * info.vertex_count +
+           12ULL * stitched + 36ULL * info.face_count + 64ULL * largest_level +
+           160ULL * largest_batch + largest_chunk + sizeof(ChunkInfo) * info.chunks.size() * 2;
 }
 
 }  // namespace vsplit::codec

@@ -15,6 +15,8 @@ namespace {
 using codec::decode_base_mesh;
 using codec::encode_base_mesh;
 
+constexpr std::uint32_t kMost = 4095;
+
 /// Rounds a shape to a grid of 2^bits points an axis.
 GridMesh on_grid(const IndexedMesh& mesh, int bits)
 {
@@ -40,7 +42,7 @@ void expect_round_trip(const GridMesh& base)
     const auto encoded = encode_base_mesh(base);
     ASSERT_TRUE(encoded.has_value()) << describe(encoded.error());
     const auto decoded =
-        decode_base_mesh(encoded->bytes, size_of(base.positions), size_of(base.triangles));
+        decode_base_mesh(encoded->bytes, size_of(base.positions), size_of(base.triangles), kMost);
     ASSERT_TRUE(decoded.has_value()) << describe(decoded.error());
     EXPECT_EQ(decoded->positions, encoded->decoded.positions);
     EXPECT_EQ(decoded->triangles, encoded->decoded.triangles);
@@ -142,7 +144,7 @@ protected:
 
     [[nodiscard]] Result<GridMesh> decode(const std::vector<std::byte>& bytes) const
     {
-        return decode_base_mesh(bytes, size_of(base_.positions), size_of(base_.triangles));
+        return decode_base_mesh(bytes, size_of(base_.positions), size_of(base_.triangles), kMost);
     }
 
     GridMesh base_;
@@ -169,11 +171,11 @@ TEST_F(BaseMeshBytes, AreRejectedWhenTheCountsDiffer)
 {
     const std::uint32_t vertices = size_of(base_.positions);
     const std::uint32_t faces = size_of(base_.triangles);
-    EXPECT_TRUE(decode_base_mesh(bytes_, vertices, faces).has_value());
-    EXPECT_FALSE(decode_base_mesh(bytes_, vertices - 1, faces).has_value());
-    EXPECT_FALSE(decode_base_mesh(bytes_, vertices + 1, faces).has_value());
-    EXPECT_FALSE(decode_base_mesh(bytes_, vertices, faces - 1).has_value());
-    EXPECT_FALSE(decode_base_mesh(bytes_, vertices, faces + 1).has_value());
+    EXPECT_TRUE(decode_base_mesh(bytes_, vertices, faces, kMost).has_value());
+    EXPECT_FALSE(decode_base_mesh(bytes_, vertices - 1, faces, kMost).has_value());
+    EXPECT_FALSE(decode_base_mesh(bytes_, vertices + 1, faces, kMost).has_value());
+    EXPECT_FALSE(decode_base_mesh(bytes_, vertices, faces - 1, kMost).has_value());
+    EXPECT_FALSE(decode_base_mesh(bytes_, vertices, faces + 1, kMost).has_value());
 }
 
 TEST_F(BaseMeshBytes, NeverGiveOtherCountsWhenTheyAreChanged)

@@ -11,6 +11,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace vsplit::test {
 namespace {
 
@@ -82,6 +84,53 @@ TEST(DecoderHeap, StaysWithinItsPromiseWhereMuchIsStitched)
     EXPECT_LE(peak_while_decoding(large.file), codec::decoder_heap_bytes(large.info));
     // Every square an island of its own whose corners repair leaves apart.
     expect_within_promise(encode(with_holes(height_field(150, 150, 0.3, 2), 0.5, 3)));
+}
+
+TEST(DecoderHeap, StaysWithinItsPromiseForABaseThatClaimsWideAttributes)
+{
+    const precompute::EncodeOptions options{
+        .metric = precompute::Metric::Qem, .base_vertices = 100000};
+    StreamParts parts = take_apart(encode(torus(120, 100, 0.01, 1), options).file);
+    // Draco's description of the one attribute: position, 32-bit integers, three components.
+    constexpr std::array kPositions{
+        std::byte{1}, std::byte{0}, std::byte{5}, std::byte{3}, std::byte{0}, std::byte{0}};
+    Bytes& base = parts.chunks[0];
+    const auto place = std::ranges::search(base, kPositions).begin();
+    ASSERT_NE(place, base.end());
+    place[3] = std::byte{255};
+    const Bytes file = put_together(parts);
+    EXPECT_LE(peak_while_decoding(file), codec::decoder_heap_bytes(parts.info));
+    EXPECT_EQ(decode(file).error.value().code, ErrorCode::BadChunk);
+}
+
+TEST(DecoderHeap, StaysWithinItsPromiseForABaseOfManySymbols)
+{
+    for (const int bits : {8, 12, 16, 20})
+    {
+        for (const std::uint32_t across : {3U, 10U, 40U})
+        {
+            SCOPED_TRACE(::testing::Message() << bits << " bits, " << across << " across");
+            expect_within_promise(
+                encode(torus(40, across, 0.5, 1), {.position_bits = bits, .base_vertices = 10000})
+            );
+        }
+    }
+}
+
+TEST(DecoderHeap, StaysWithinItsPromiseForATinyBaseThatClaimsLargeTables)
+{
+    StreamParts parts = take_apart(encode(octahedron(), {.position_bits = 8}).file);
+    // Draco's description of the attribute and of how it is coded: the last byte sizes a table.
+    constexpr std::array kCoding{
+        std::byte{1}, std::byte{0}, std::byte{5}, std::byte{3}, std::byte{0}, std::byte{0}};
+    Bytes& base = parts.chunks[0];
+    const auto place = std::ranges::search(base, kCoding).begin();
+    ASSERT_NE(place, base.end());
+    ASSERT_EQ(place[11], std::byte{5});
+    place[11] = std::byte{18};
+    const Bytes file = put_together(parts);
+    EXPECT_LE(peak_while_decoding(file), codec::decoder_heap_bytes(parts.info));
+    EXPECT_EQ(decode(file).error.value().code, ErrorCode::BadChunk);
 }
 
 TEST(DecoderHeap, IsNotTakenForAHeaderThatIsRefused)
