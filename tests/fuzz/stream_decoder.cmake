@@ -1,3 +1,8 @@
-vsplit_fuzzer(stream_decoder_fuzzer stream_decoder_fuzzer.cpp vsplit_encode)
-target_sources(stream_decoder_fuzzer PRIVATE ${PROJECT_SOURCE_DIR}/tests/codec/stream_parts.cpp)
-target_include_directories(stream_decoder_fuzzer PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+foreach(name stream_decoder_fuzzer batch_decoder_fuzzer)
+    vsplit_fuzzer(${name} ${name}.cpp vsplit_encode)
+    target_sources(
+        ${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests/codec/shapes.cpp
+                        ${PROJECT_SOURCE_DIR}/tests/codec/stream_parts.cpp
+    )
+    target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+endforeach()

@@ -1,0 +1,1 @@
+vsplit_fuzzer(base_mesh_fuzzer base_mesh_fuzzer.cpp vsplit_decode)

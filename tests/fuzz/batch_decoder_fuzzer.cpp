@@ -1,0 +1,107 @@
+// Decodes hostile batches on a sound base: an octahedron or an open strip. Every chunk begins with a
+// row of the index: kind and flags, splits, boundary splits, length, a byte each; then its contents.
+
+#include "codec/base_mesh_encoder.h"
+#include "codec/shapes.h"
+#include "codec/stream_parts.h"
+#include "core/byte_reader.h"
+#include "fuzz/decoder_check.h"
+#include "mesh/quantization_grid.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+
+namespace {
+
+using namespace vsplit;
+
+constexpr int kBits = 10;
+constexpr int kBaseShift = 4;
+
+/// A stream that is nothing but a base.
+test::StreamParts base_stream(const IndexedMesh& mesh)
+{
+    test::StreamParts parts;
+    parts.info.grid = make_grid(mesh.positions, kBits);
+    GridMesh base = quantize(parts.info.grid, mesh);
+    for (auto& position : base.positions)
+    {
+        for (std::int32_t& coordinate : position)
+        {
+            coordinate >>= kBaseShift;
+        }
+    }
+    codec::ChunkInfo row;
+    row.kind = proto::ChunkKind::Base;
+    row.vertices = static_cast<std::uint32_t>(base.positions.size());
+    row.faces = static_cast<std::uint32_t>(base.triangles.size());
+    parts.info.chunks.push_back(row);
+    test::Bytes chunk = codec::encode_base_mesh(base).value().bytes;
+    chunk.insert(chunk.begin(), static_cast<std::byte>(kBaseShift));
+    parts.chunks.push_back(std::move(chunk));
+    return parts;
+}
+
+struct Row
+{
+    unsigned flags = 0;  ///< 1: the level goes on; 2: optional kind; 4: stitches.
+    unsigned splits = 0;
+    unsigned boundary = 0;
+    unsigned length = 0;
+};
+
+bool read_row(ByteReader& reader, Row& row)
+{
+    const auto bytes = reader.read<std::uint32_t>();
+    if (!bytes)
+    {
+        return false;
+    }
+    row = {*bytes & 255U, *bytes >> 8 & 255U, *bytes >> 16 & 255U, *bytes >> 24};
+    return true;
+}
+
+void add_chunk(test::StreamParts& parts, const Row& row, std::span<const std::byte> contents)
+{
+    codec::ChunkInfo chunk = parts.info.chunks.back();
+    chunk.kind = (row.flags & 4U) != 0   ? proto::ChunkKind::Stitch
+                 : (row.flags & 2U) != 0 ? static_cast<proto::ChunkKind>(200)
+                                         : proto::ChunkKind::Batch;
+    chunk.ends_level = (row.flags & 1U) == 0;
+    if (chunk.kind == proto::ChunkKind::Batch)
+    {
+        chunk.vertices += row.splits;
+        chunk.faces += 2 * row.splits - std::min(row.boundary, row.splits);
+    }
+    parts.info.chunks.push_back(chunk);
+    parts.chunks.emplace_back(contents.begin(), contents.end());
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+    static const test::StreamParts kClosed = base_stream(test::octahedron());
+    static const test::StreamParts kOpen = base_stream(test::strip(6));
+    ByteReader reader(std::as_bytes(std::span(data, size)));
+    const auto shape = reader.read<std::uint8_t>();
+    if (!shape)
+    {
+        return 0;
+    }
+    test::StreamParts parts = *shape % 2 == 0 ? kClosed : kOpen;
+    for (Row row; read_row(reader, row);)
+    {
+        add_chunk(
+            parts, row, *reader.read_bytes(std::min<std::size_t>(row.length, reader.remaining()))
+        );
+    }
+    parts.info.vertex_count = parts.info.chunks.back().vertices;
+    parts.info.face_count = parts.info.chunks.back().faces;
+    const test::Bytes file = test::put_together(parts);
+    fuzz::check_stream(file, file.size());
+    return 0;
+}

@@ -1,0 +1,1 @@
+vsplit_fuzzer(stitch_fuzzer stitch_fuzzer.cpp vsplit_encode)
