@@ -13,7 +13,8 @@ namespace vsplit::net {
 namespace {
 
 constexpr std::string_view kStreamExtension = ".vsplit";
-constexpr std::array<std::string_view, 4> kSourceExtensions = {".ply", ".obj", ".off", ".stl"};
+constexpr std::array<std::string_view, 5> kSourceExtensions = {
+    ".ply", ".obj", ".off", ".stl", ".om"};
 
 bool is_source_name(const std::filesystem::path& path)
 {

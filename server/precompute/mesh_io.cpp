@@ -5,6 +5,7 @@
 #include "precompute/text_scan.h"
 
 #include <algorithm>
+#include <array>
 #include <exception>
 #include <new>
 #include <string>
@@ -40,12 +41,17 @@ Result<IndexedMesh> parse(const std::string& extension, std::span<const std::byt
     {
         return read_stl(bytes);
     }
+    if (extension == ".om")
+    {
+        return read_om(bytes);
+    }
     return read_text(bytes, extension == ".off" ? read_off : read_obj);
 }
 
 bool is_readable(const std::string& extension)
 {
-    return extension == ".ply" || extension == ".stl" || extension == ".off" || extension == ".obj";
+    constexpr std::array kExtensions{".ply", ".stl", ".off", ".obj", ".om"};
+    return std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
 }
 
 }  // namespace
@@ -61,7 +67,7 @@ Result<IndexedMesh> read_mesh(const std::filesystem::path& path)
         {
             return fail(
                 ErrorCode::UnsupportedInput,
-                start + "the extension is none of .obj, .ply, .off and .stl"
+                start + "the extension is none of .obj, .ply, .off, .stl and .om"
             );
         }
         const auto bytes = read_file(path);

@@ -235,7 +235,8 @@ void add_encode_command(CLI::App& app, Result<void>& result)
     arguments->metric = std::string(precompute::metric_name(options.metric));
 
     CLI::App* const command = app.add_subcommand("encode", "Encodes a mesh into a stream");
-    command->add_option("IN", arguments->input, "The mesh: .obj, .ply, .off or .stl")->required();
+    command->add_option("IN", arguments->input, "The mesh: .obj, .ply, .off, .stl or .om")
+        ->required();
     command->add_option("-o,--output", arguments->output, "The stream [IN with .vsplit]");
     command->add_option("--position-bits", options.position_bits, "Bits a coordinate")
         ->check(CLI::Range(proto::kMinPositionBits, proto::kMaxPositionBits))

@@ -3,8 +3,8 @@ find_package(OpenMesh CONFIG REQUIRED)
 vsplit_fuzzer(mesh_import_fuzzer mesh_import_fuzzer.cpp vsplit_mesh OpenMeshCore)
 foreach(
     source
-    edge_table half_edge_mesh mesh_builder ply_header read_obj read_off read_ply read_stl repair
-    repair_orient repair_split repair_weld text_scan validate
+    edge_table half_edge_mesh mesh_builder om_chunks ply_header read_obj read_off read_om read_ply
+    read_stl repair repair_orient repair_split repair_weld text_scan validate
 )
     target_sources(
         mesh_import_fuzzer PRIVATE ${PROJECT_SOURCE_DIR}/server/precompute/${source}.cpp

@@ -20,7 +20,7 @@ using namespace vsplit::precompute;
 Result<IndexedMesh> read(std::uint8_t format, std::span<const std::byte> bytes)
 {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    switch (format % 4)
+    switch (format % 5)
     {
         case 0:
             return read_ply(bytes);
@@ -28,8 +28,10 @@ Result<IndexedMesh> read(std::uint8_t format, std::span<const std::byte> bytes)
             return read_off(text);
         case 2:
             return read_obj(text);
-        default:
+        case 3:
             return read_stl(bytes);
+        default:
+            return read_om(bytes);
     }
 }
 

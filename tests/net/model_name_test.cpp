@@ -23,6 +23,7 @@ protected:
         folder_.write("root/scans/bunny.vsplit", kAnything);
         folder_.write("root/scans/bunny.ply", kAnything);
         folder_.write("root/horse.off", kAnything);
+        folder_.write("root/goat.om", kAnything);
         folder_.write("root/notes.txt", kAnything);
         folder_.write("secret.vsplit", kAnything);
     }
@@ -53,6 +54,7 @@ TEST_F(LocateModel, TellsSourceMeshesFromStreams)
     EXPECT_FALSE(locate_model(root_, "scans/bunny")->is_source_mesh);
     EXPECT_EQ(found("horse"), "horse.off");
     EXPECT_TRUE(locate_model(root_, "horse")->is_source_mesh);
+    EXPECT_EQ(found("goat"), "goat.om");
 }
 
 TEST_F(LocateModel, NamesNeverLeaveTheRoot)

@@ -57,7 +57,7 @@ TEST_F(HostileMesh, RefusesEmptyFilesAndNoiseOfEveryFormat)
     {
         byte = static_cast<char>(random() & 0xFFU);
     }
-    for (const std::string name : {"a.ply", "a.obj", "a.off", "a.stl"})
+    for (const std::string name : {"a.ply", "a.obj", "a.off", "a.stl", "a.om"})
     {
         expect_refused(name, "", ErrorCode::NotAMesh, "the file is empty");
         expect_refused(name, noise, ErrorCode::NotAMesh);

@@ -45,7 +45,7 @@ TEST_F(BadInput, EmptyAndNotAMesh)
     {
         byte = static_cast<char>(random() & 0xFFU);
     }
-    for (const std::string name : {"a.ply", "a.obj", "a.off", "a.stl"})
+    for (const std::string name : {"a.ply", "a.obj", "a.off", "a.stl", "a.om"})
     {
         expect_refused(name, "", 3, "the file is empty");
         expect_refused(name, noise, 3, "not-a-mesh: cannot read ");
