@@ -7,6 +7,7 @@
 #include "core/assert.h"
 
 #include <algorithm>
+#include <new>
 #include <optional>
 #include <utility>
 
@@ -108,7 +109,14 @@ private:
         VSPLIT_TRY(info);
         info_ = std::move(*info);
         consume_unit();
-        reserve(prefix_info(*info_, limits_.max_level));
+        try
+        {
+            reserve(prefix_info(*info_, limits_.max_level));
+        }
+        catch (const std::bad_alloc&)  // the limits allow more than there is
+        {
+            return fail(ErrorCode::LimitExceeded, "there is not enough memory for the mesh");
+        }
         return current(StepKind::Header);
     }
 
