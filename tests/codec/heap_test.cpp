@@ -12,6 +12,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <sys/resource.h>
 
 namespace vsplit::test {
 namespace {
@@ -133,7 +135,8 @@ TEST(DecoderHeap, StaysWithinItsPromiseForATinyBaseThatClaimsLargeTables)
     EXPECT_EQ(decode(file).error.value().code, ErrorCode::BadChunk);
 }
 
-TEST(DecoderHeap, IsNotTakenForAHeaderThatIsRefused)
+/// A stream that claims the largest mesh of all and then ends.
+Bytes huge_header()
 {
     codec::StreamInfo info;
     info.grid.bits = 12;
@@ -146,6 +149,12 @@ TEST(DecoderHeap, IsNotTakenForAHeaderThatIsRefused)
     info.chunks[0].kind = proto::ChunkKind::Base;
     Bytes file = codec::write_stream_header(info, {4095, 4095, 4095});
     file.resize(file.size() + 2000);
+    return file;
+}
+
+TEST(DecoderHeap, IsNotTakenForAHeaderThatIsRefused)
+{
+    const Bytes file = huge_header();
     for (const codec::DecodeLimits& limits : {
              codec::DecodeLimits{.max_vertices = 1U << 24},
              codec::DecodeLimits{.max_faces = 1U << 24},
@@ -158,6 +167,26 @@ TEST(DecoderHeap, IsNotTakenForAHeaderThatIsRefused)
         EXPECT_EQ(decode(file, limits).error.value().code, ErrorCode::LimitExceeded);
     }
 }
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // these need terabytes
+
+/// Decodes with little memory; exits with 0 when that is an error like others.
+[[noreturn]] void decode_in_little_memory(const Bytes& file)
+{
+    constexpr rlimit kLittle{std::uint64_t{1} << 30, std::uint64_t{1} << 30};
+    const bool limited = ::setrlimit(RLIMIT_AS, &kLittle) == 0;
+    const Decoded decoded = decode(file);
+    const bool refused = decoded.error && decoded.error->code == ErrorCode::LimitExceeded;
+    std::_Exit(limited && refused ? 0 : 1);
+}
+
+TEST(DecoderHeapDeathTest, GivesAnErrorWhenThereIsNotEnough)
+{
+    const Bytes file = huge_header();
+    EXPECT_EXIT(decode_in_little_memory(file), ::testing::ExitedWithCode(0), "");
+}
+
+#endif
 
 TEST(DecoderHeap, GrowsOnlyWithTheBytesOfALongHeader)
 {

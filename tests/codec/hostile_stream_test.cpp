@@ -16,32 +16,26 @@ using codec::ChunkInfo;
 using codec::StreamDecoder;
 using proto::ChunkKind;
 
-const EncodedSample& torus_sample()
-{
-    static const EncodedSample kSample = encode(torus(20, 12, 0.05, 3));
-    return kSample;
-}
-
-const EncodedSample& sheet_sample()
-{
-    static const EncodedSample kSample = encode(with_holes(height_field(16, 15, 0.5, 5), 0.05, 6));
-    return kSample;
-}
-
-const EncodedSample& book_sample()
-{
-    static const EncodedSample kSample = encode(book(7));
-    return kSample;
-}
-
-class Hostile : public ::testing::TestWithParam<const EncodedSample& (*)()>
+class Hostile : public ::testing::TestWithParam<NamedMesh>
 {
 protected:
-    [[nodiscard]] static const EncodedSample& sample() { return GetParam()(); }
+    void SetUp() override { sample_ = encode(GetParam().make()); }
+
+    [[nodiscard]] const EncodedSample& sample() const { return sample_; }
+
+private:
+    EncodedSample sample_;
 };
 
 INSTANTIATE_TEST_SUITE_P(
-    Streams, Hostile, ::testing::Values(&torus_sample, &sheet_sample, &book_sample)
+    Streams,
+    Hostile,
+    ::testing::Values(
+        NamedMesh{"torus", [] { return torus(20, 12, 0.05, 3); }},
+        NamedMesh{"holes", [] { return with_holes(height_field(16, 15, 0.5, 5), 0.05, 6); }},
+        NamedMesh{"book", [] { return book(7); }}
+    ),
+    [](const auto& instance) { return instance.param.name; }
 );
 
 /// Accepts no mesh at all, too.
@@ -275,7 +269,7 @@ TEST_P(Hostile, RefusesWhatIsBeyondItsLimits)
 
 TEST(StitchChunk, IsRefusedBeforeTheLastLevel)
 {
-    StreamParts parts = take_apart(book_sample().file);
+    StreamParts parts = take_apart(encode(book(7)).file);
     ASSERT_EQ(parts.info.chunks.back().kind, ChunkKind::Stitch);
     std::rotate(
         parts.info.chunks.begin() + 1, parts.info.chunks.end() - 1, parts.info.chunks.end()
@@ -288,7 +282,7 @@ TEST(StitchChunk, IsRefusedBeforeTheLastLevel)
 
 TEST(StitchChunk, OfAnotherCodecIsSkipped)
 {
-    StreamParts parts = take_apart(book_sample().file);
+    StreamParts parts = take_apart(encode(book(7)).file);
     parts.info.chunks.back().codec = 1;
     const Decoded decoded = decode(put_together(parts));
     EXPECT_TRUE(decoded.complete);
@@ -297,7 +291,7 @@ TEST(StitchChunk, OfAnotherCodecIsSkipped)
 
 TEST(StitchChunk, RestoresTheVerticesThatRepairCut)
 {
-    const EncodedSample& sample = book_sample();
+    const EncodedSample sample = encode(book(7));
     const Decoded decoded = decode(sample.file);
     ASSERT_EQ(decoded.stitches.size(), sample.info.vertex_count);
     // By position, because the stream numbers vertices anew; at the spine all copies are one.
