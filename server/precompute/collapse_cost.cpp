@@ -147,7 +147,7 @@ double Quadric::evaluate(const Vector3& point) const
 CollapseCost::CollapseCost(
     Metric metric,
     std::span<const Vector3> positions,
-    std::span<const Triangle> triangles,
+    const CollapseMesh& mesh,
     std::vector<float> weights
 )
     : metric_(metric), positions_(positions), weights_(std::move(weights))
@@ -155,14 +155,14 @@ CollapseCost::CollapseCost(
     if (metric == Metric::Curvature || metric == Metric::CurvatureBspline || metric == Metric::Qem)
     {
         quadrics_.resize(positions.size());
-        const CollapseMesh links(static_cast<std::uint32_t>(positions.size()), triangles);
+        const std::vector<Triangle> triangles = mesh.triangles();
         for (std::size_t f = 0; f < triangles.size(); ++f)
         {
             add_triangle(positions, triangles[f], quadrics_);
             for (std::size_t edge = 0; edge < 3; ++edge)
             {
                 const auto corner = static_cast<std::int32_t>(3 * f + (edge + 2) % 3);
-                if (links.face_across(corner) < 0)
+                if (mesh.face_across(corner) < 0)
                 {
                     add_boundary_edge(positions, triangles[f], edge, quadrics_);
                 }

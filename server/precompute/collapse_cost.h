@@ -45,13 +45,13 @@ struct StarGeometry
 class CollapseCost
 {
 public:
-    /// `positions`: V points in grid units, not rounded; `triangles`: the complete mesh;
-    /// `weights`: one factor a vertex for the metrics that use curvature (see vertex_weights()),
+    /// `positions`: V points in grid units, not rounded; `mesh`: the complete mesh, before any
+    /// collapse, needed only during construction; `weights`: one factor a vertex for the metrics that use curvature (see vertex_weights()),
     /// empty for the others.
     CollapseCost(
         Metric metric,
         std::span<const Vector3> positions,
-        std::span<const Triangle> triangles,
+        const CollapseMesh& mesh,
         std::vector<float> weights
     );
 

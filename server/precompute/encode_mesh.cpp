@@ -103,7 +103,7 @@ Sequence make_sequence(
         }
     }
     CollapseMesh working(vertex_count, mesh.triangles);
-    CollapseCost cost(options.metric, exact, mesh.triangles, std::move(weights));
+    CollapseCost cost(options.metric, exact, working, std::move(weights));
     LevelBuilder builder(working, cost, exact, locked);
     const std::size_t base =
         options.base_vertices != 0 ? options.base_vertices : kDefaultBaseVertices;

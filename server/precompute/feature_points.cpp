@@ -30,6 +30,30 @@ double mean_of(const std::vector<double>& values)
     return sum / static_cast<double>(std::max<std::size_t>(1, values.size()));
 }
 
+/// Means of `value(vertex, neighbour)` over each vertex's adaptive neighbourhood; 0 where it is empty.
+template <typename Value>
+std::vector<double> neighbourhood_means(
+    const HalfEdgeMesh& mesh, unsigned threads, const Value& value
+)
+{
+    const auto vertex_count = static_cast<std::uint32_t>(mesh.n_vertices());
+    std::vector<double> means(vertex_count, 0.0);
+    parallel_ranges(vertex_count, threads, [&](std::uint32_t begin, std::uint32_t end) {
+        NeighbourhoodSearch search(mesh);
+        for (std::uint32_t v = begin; v < end; ++v)
+        {
+            const auto neighbours = search.adaptive(v);
+            double sum = 0.0;
+            for (const std::uint32_t neighbour : neighbours)
+            {
+                sum += value(v, neighbour);
+            }
+            means[v] = sum / static_cast<double>(std::max<std::size_t>(1, neighbours.size()));
+        }
+    });
+    return means;
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> feature_points(
@@ -43,43 +67,25 @@ std::vector<std::uint8_t> feature_points(
     std::vector<std::uint8_t> features(vertex_count, 0);
     const double floor =
         options.flat * mean_of(std::vector<double>(curvature.begin(), curvature.end()));
-    parallel_ranges(vertex_count, threads, [&](std::uint32_t begin, std::uint32_t end) {
-        NeighbourhoodSearch search(mesh);
-        for (std::uint32_t v = begin; v < end; ++v)
-        {
-            const auto neighbours = search.adaptive(v);
-            double sum = 0.0;
-            for (const std::uint32_t neighbour : neighbours)
-            {
-                sum += static_cast<double>(curvature[neighbour]);
-            }
-            const double mean =
-                sum / static_cast<double>(std::max<std::size_t>(1, neighbours.size()));
-            const auto own = static_cast<double>(curvature[v]);
-            features[v] = own > options.ratio * mean && own > floor ? 1 : 0;  // eq. 17
-        }
+    const auto means = neighbourhood_means(mesh, threads, [&](std::uint32_t, std::uint32_t other) {
+        return static_cast<double>(curvature[other]);
     });
+    for (std::uint32_t v = 0; v < vertex_count; ++v)
+    {
+        const auto own = static_cast<double>(curvature[v]);
+        features[v] = own > options.ratio * means[v] && own > floor ? 1 : 0;  // eq. 17
+    }
     return features;
 }
 
 std::vector<float> sparseness_weights(const HalfEdgeMesh& mesh, unsigned threads)
 {
     const auto vertex_count = static_cast<std::uint32_t>(mesh.n_vertices());
-    std::vector<double> spacing(vertex_count, 0.0);
-    parallel_ranges(vertex_count, threads, [&](std::uint32_t begin, std::uint32_t end) {
-        NeighbourhoodSearch search(mesh);
-        for (std::uint32_t v = begin; v < end; ++v)
-        {
-            const auto neighbours = search.adaptive(v);
-            double sum = 0.0;
-            for (const std::uint32_t neighbour : neighbours)
-            {
-                sum += distance(mesh, v, neighbour);
-            }
-            // eq. 18
-            spacing[v] = sum / static_cast<double>(std::max<std::size_t>(1, neighbours.size()));
-        }
-    });
+    // eq. 18
+    const auto spacing =
+        neighbourhood_means(mesh, threads, [&](std::uint32_t v, std::uint32_t neighbour) {
+            return distance(mesh, v, neighbour);
+        });
     const double model_spacing = mean_of(spacing);
     std::vector<float> weights(vertex_count, 1.0F);
     if (!(model_spacing > 0.0) || !std::isfinite(model_spacing))

@@ -51,7 +51,7 @@ Sequence make_sequence(
         exact.push_back({1.0 * x, 1.0 * y, 1.0 * z});
     }
     CollapseMesh working(static_cast<std::uint32_t>(exact.size()), mesh.triangles);
-    CollapseCost cost(Metric::Qem, exact, mesh.triangles, {});
+    CollapseCost cost(Metric::Qem, exact, working, {});
     LevelBuilder builder(working, cost, exact, locked);
     sequence.triangles.push_back(mesh.triangles);
     for (std::size_t level = 0; level < count; ++level)
