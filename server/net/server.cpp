@@ -117,6 +117,9 @@ public:
                 spdlog::error("defect: the listener threw an exception");
             }
         };
+        // The logger exists before the threads: the guard of its making is inside a library, where
+        // the thread sanitizer cannot see it.
+        spdlog::default_logger_raw();
         asio::co_spawn(strand_, accept_loop(), log_exception);
         asio::co_spawn(strand_, stop_on_signal(), log_exception);
         std::vector<std::jthread> threads;
