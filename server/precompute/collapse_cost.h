@@ -46,13 +46,16 @@ class CollapseCost
 {
 public:
     /// `positions`: V points in grid units, not rounded; `mesh`: the complete mesh, before any
-    /// collapse, needed only during construction; `weights`: one factor a vertex for the metrics that use curvature (see vertex_weights()),
-    /// empty for the others.
+    /// collapse, needed only during construction; `weights`: one factor a vertex for the metrics that
+    /// use curvature (see vertex_weights()), empty for the others; `importance`: 0 .. 1 a vertex, 1
+    /// for what the publisher wants to keep, or empty. Removing a vertex of importance w costs
+    /// kKeepFactor^w times as much.
     CollapseCost(
         Metric metric,
         std::span<const Vector3> positions,
         const CollapseMesh& mesh,
-        std::vector<float> weights
+        std::vector<float> weights,
+        std::span<const float> importance = {}
     );
 
     /// Collects the star of a vertex.
@@ -64,10 +67,22 @@ public:
         std::uint32_t removed, const OneRing& ring, const StarGeometry& star, std::size_t kept
     ) const;
 
+    /// True when the publisher wants to keep a vertex for longer than its price says.
+    [[nodiscard]] bool is_marked(std::uint32_t vertex) const
+    {
+        return !keep_.empty() && keep_[vertex] > 1.0F;
+    }
+
+    /// True when there is such a vertex.
+    [[nodiscard]] bool has_marks() const { return !keep_.empty(); }
+
     /// Hands the removed vertex's share of the original surface to the kept one.
     void merge(std::uint32_t removed, std::uint32_t kept);
 
 private:
+    [[nodiscard]] double metric_price(
+        std::uint32_t removed, const OneRing& ring, const StarGeometry& star, std::size_t kept
+    ) const;
     [[nodiscard]] double quadric_price(
         std::uint32_t removed, const OneRing& ring, const StarGeometry& star, std::size_t kept
     ) const;
@@ -79,6 +94,7 @@ private:
     std::span<const Vector3> positions_;
     std::vector<Quadric> quadrics_;
     std::vector<float> weights_;
+    std::vector<float> keep_;  ///< Factor of every vertex; empty when none is marked.
 };
 
 /// Computes the factors that a metric needs: for the curvature metrics 1 + C / (2 mean C), with C cut

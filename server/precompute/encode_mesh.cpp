@@ -49,14 +49,29 @@ constexpr std::size_t kSmallestBatch = 16;
 /// Splits that a level has at most when it joins several batches.
 constexpr std::size_t kSmallestLevel = 120;
 
-bool is_curvature(Metric metric)
+bool is_made_for_coding(Metric metric)
 {
-    return metric == Metric::Curvature || metric == Metric::CurvatureBspline;
+    return metric == Metric::Curvature || metric == Metric::CurvatureBspline ||
+           metric == Metric::Quadrics;
+}
+
+/// The next number of vertices at which a level must end.
+std::size_t next_stop(const EncodeOptions& options, std::size_t vertices)
+{
+    std::size_t stop = options.base_vertices != 0 ? options.base_vertices : kDefaultBaseVertices;
+    for (const std::uint32_t wanted : options.level_vertices)
+    {
+        if (wanted < vertices)
+        {
+            stop = std::max<std::size_t>(stop, wanted);
+        }
+    }
+    return stop;
 }
 
 LevelStyle style_for(Metric metric, std::size_t vertices, std::size_t all)
 {
-    if (is_curvature(metric) &&
+    if (is_made_for_coding(metric) &&
         static_cast<double>(vertices) > kRegularShare * static_cast<double>(all))
     {
         return {
@@ -80,6 +95,7 @@ struct Sequence
 {
     std::vector<std::vector<std::vector<codec::Collapse>>> levels;
     std::vector<std::vector<Triangle>> triangles;
+    std::vector<std::uint8_t> starts;  ///< By batch 1 when it may not join the level before it.
 };
 
 Sequence make_sequence(
@@ -103,24 +119,26 @@ Sequence make_sequence(
         }
     }
     CollapseMesh working(vertex_count, mesh.triangles);
-    CollapseCost cost(options.metric, exact, working, std::move(weights));
+    CollapseCost cost(options.metric, exact, working, std::move(weights), options.importance);
     LevelBuilder builder(working, cost, exact, locked);
-    const std::size_t base =
-        options.base_vertices != 0 ? options.base_vertices : kDefaultBaseVertices;
+    const std::size_t base = next_stop(options, 0);
     Sequence sequence;
     sequence.triangles.push_back(mesh.triangles);
     while (builder.vertex_count() > base)
     {
         const std::size_t before = builder.vertex_count();
+        const std::size_t stop = next_stop(options, before);
         auto level =
-            builder.next_level(style_for(options.metric, before, vertex_count), before - base);
+            builder.next_level(style_for(options.metric, before, vertex_count), before - stop);
         if (level.empty())
         {
             break;
         }
-        const bool slow =
-            static_cast<double>(level.size()) < kLeastShare * static_cast<double>(before);
+        const bool arrived = before - level.size() == stop;
+        const bool slow = !arrived && static_cast<double>(level.size()) <
+                                          kLeastShare * static_cast<double>(before);
         sequence.levels.push_back({std::move(level)});
+        sequence.starts.push_back(arrived ? 1 : 0);
         sequence.triangles.push_back(working.triangles());
         if (progress)
         {
@@ -140,13 +158,14 @@ void order_levels(Sequence& sequence)
 {
     std::ranges::reverse(sequence.levels);
     std::ranges::reverse(sequence.triangles);
+    std::ranges::reverse(sequence.starts);
     Sequence joined;
     joined.triangles.push_back(std::move(sequence.triangles.front()));
     std::size_t splits = kSmallestLevel;
     for (std::size_t i = 0; i < sequence.levels.size(); ++i)
     {
         auto& batch = sequence.levels[i].front();
-        if (splits + batch.size() > kSmallestLevel ||
+        if (splits + batch.size() > kSmallestLevel || sequence.starts[i] != 0 ||
             joined.levels.back().size() == codec::kMaxBatches)
         {
             splits = 0;
@@ -256,6 +275,7 @@ Result<EncodedMesh> encode_mesh(
         exact,
         quantised,
         sequence.triangles,
+        options.importance,
         grid.bits,
         options.threads,
         stage_progress(progress, "measure")

@@ -20,6 +20,10 @@ struct EncodeOptions
     int position_bits = 12;  ///< 8 .. 20.
     Metric metric = Metric::Curvature;
     std::uint32_t base_vertices = 0;  ///< Aim for the base mesh; 0 lets the encoder choose.
+    /// Numbers of vertices, in any order, that a level is to have exactly, as far as topology lets it.
+    std::vector<std::uint32_t> level_vertices{};
+    /// Per vertex 0 .. 1, 1 for what is to be kept for long, or empty; see CollapseCost.
+    std::vector<float> importance{};
     /// For training only, see codec::StreamPlan::training.
     codec::LearnedModel* training = nullptr;
     unsigned threads = 1;  ///< Worker threads, at least 1; the bytes do not depend on it.
@@ -51,6 +55,7 @@ struct EncodedMesh
 /// consistently oriented (what repair_mesh() returns); `stitches`: per vertex the representative of
 /// the source vertex it was cut from (as RepairedMesh::stitches), or empty; vertices that share one
 /// are never removed, so that no level cracks.
+/// Precondition: options.importance has one number a vertex, or none.
 /// Errors: EmptyMesh, InputTooLarge, BadIndex and UnsupportedInput (not such a mesh; see
 /// check_manifold()), Internal (the result failed its own check).
 /// Cost: about 30 microseconds and 500 bytes a vertex. Deterministic: the same input and options

@@ -53,6 +53,16 @@ double worst_quality(const OneRing& ring, const StarGeometry& star, std::size_t 
     return worst;
 }
 
+/// The value below which a share of the values lies; reorders them.
+float quantile(std::vector<float>& values, double share)
+{
+    const auto index = std::min(
+        values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size()))
+    );
+    std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(index));
+    return values[index];
+}
+
 }  // namespace
 
 LevelBuilder::LevelBuilder(
@@ -127,6 +137,7 @@ void LevelBuilder::collect(const LevelStyle& style)
 void LevelBuilder::rank(const LevelStyle& style)
 {
     std::vector<float> best_prices;
+    std::vector<float> unmarked_prices;
     for (std::size_t i = 0; i < candidates_.size();)
     {
         const std::uint32_t vertex = candidates_[i].removed;
@@ -136,23 +147,21 @@ void LevelBuilder::rank(const LevelStyle& style)
             best = std::min(best, candidates_[i].price);
         }
         best_prices.push_back(best);
+        if (cost_.has_marks() && !cost_.is_marked(vertex))
+        {
+            unmarked_prices.push_back(best);
+        }
     }
     if (best_prices.empty())
     {
         return;
     }
-    const auto quantile = [&](double share) {
-        const auto index = std::min(
-            best_prices.size() - 1,
-            static_cast<std::size_t>(share * static_cast<double>(best_prices.size()))
-        );
-        std::ranges::nth_element(
-            best_prices, best_prices.begin() + static_cast<std::ptrdiff_t>(index)
-        );
-        return best_prices[index];
-    };
-    const double median = std::max(1e-30, static_cast<double>(quantile(0.5)));
-    const float most = style.cheapest_share < 1.0 ? quantile(style.cheapest_share) : kSettled;
+    // What may go at all is decided among the unmarked ones, or a large region would lift its own cap.
+    std::vector<float>& prices =
+        unmarked_prices.size() > best_prices.size() / 4 ? unmarked_prices : best_prices;
+    const double median = std::max(1e-30, static_cast<double>(quantile(prices, 0.5)));
+    const float most =
+        style.cheapest_share < 1.0 ? quantile(prices, style.cheapest_share) : kSettled;
     heap_.clear();
     for (Candidate& candidate : candidates_)
     {

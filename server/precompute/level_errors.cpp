@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <optional>
 #include <thread>
 
 namespace vsplit::precompute {
@@ -17,6 +18,9 @@ constexpr std::size_t kMostSamples = 8000;
 /// Tolerated ratio of cell size to surface error; larger saves bits, smaller shows steps. Measured: the
 /// optimum between 3 and 4 is flat at every rate.
 constexpr double kCellsPerError = 3.3;
+
+/// Below this, in grid units, a region counts as exact: cells cannot get smaller.
+constexpr double kLeastRegionError = 0.1;
 
 using Position = std::array<float, 3>;
 
@@ -76,6 +80,53 @@ Surface make_surface(
     return surface;
 }
 
+/// The part of the source that the publisher wants to keep; nothing when there is none.
+class Region
+{
+public:
+    Region(
+        std::span<const Position> source,
+        std::span<const Triangle> triangles,
+        std::span<const float> importance
+    )
+    {
+        std::vector<Triangle> marked;
+        for (const Triangle& triangle : triangles)
+        {
+            if (!importance.empty() && std::ranges::all_of(triangle, [&](std::uint32_t v) {
+                    return importance[v] > 0.0F;
+                }))
+            {
+                marked.push_back(triangle);
+            }
+        }
+        if (!marked.empty())
+        {
+            samples_ = sample_surface(source, marked, kCoarseSamples);
+        }
+    }
+
+    /// How far the region is from a level's surface, rms; nothing when there is no region.
+    [[nodiscard]] std::optional<double> distance_to(const Surface& surface) const
+    {
+        if (samples_.empty())
+        {
+            return std::nullopt;
+        }
+        const ClosestPointTree tree(surface.positions, surface.triangles);
+        double sum = 0.0;
+        std::uint32_t hint = 0;
+        for (const Position& point : samples_)
+        {
+            sum += static_cast<double>(tree.squared_distance(point, hint));
+        }
+        return std::sqrt(sum / static_cast<double>(samples_.size()));
+    }
+
+private:
+    std::vector<Position> samples_;
+};
+
 int shift_for(double rms, int bits)
 {
     const double cells = kCellsPerError * rms;
@@ -93,6 +144,7 @@ std::vector<LevelError> measure_levels(
     std::span<const Vector3> exact,
     const GridMesh& mesh,
     std::span<const std::vector<Triangle>> levels,
+    std::span<const float> importance,
     int bits,
     unsigned threads,
     const std::function<void(double)>& progress
@@ -102,12 +154,21 @@ std::vector<LevelError> measure_levels(
     std::ranges::transform(exact, source.begin(), to_float);
     const std::size_t samples = std::clamp(exact.size() / 4, kFewestSamples, kMostSamples);
     const DistanceReference coarse(source, mesh.triangles, std::min(kCoarseSamples, samples));
+    const Region region(source, mesh.triangles, importance);
     const DistanceReference fine(source, mesh.triangles, samples);
     std::vector<LevelError> errors(levels.size());
     for_each_parallel(levels.size(), threads, [&](std::size_t i) {
         const Surface surface =
             make_surface(levels[i], source.size(), [&](std::uint32_t v) { return source[v]; });
-        errors[i].shift = shift_for(coarse.measure(surface.positions, surface.triangles).rms, bits);
+        double rms = coarse.measure(surface.positions, surface.triangles).rms;
+        if (const auto inside = region.distance_to(surface))
+        {
+            // Cells made for the whole would blur the region. Measured (cow, homer, rocker-arm): the
+            // geometric mean takes up to 44 % off the region's error at a given rate and adds up to
+            // 15 % to the rest's; the region's own error as the measure adds up to 30 % to it.
+            rms = std::sqrt(rms * std::min(rms, std::max(*inside, kLeastRegionError)));
+        }
+        errors[i].shift = shift_for(rms, bits);
     });
     errors.back().shift = 0;
     for (std::size_t i = errors.size() - 1; i-- > 0;)

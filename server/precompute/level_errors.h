@@ -22,15 +22,18 @@ struct LevelError
 
 /// Chooses the precision of every level and measures what it then looks like.
 /// `exact`: V source points, grid units, not rounded; `mesh`: the complete mesh on the grid;
-/// `levels`: triangles of each level, coarsest first, the last one complete; `bits`: position bits;
+/// `levels`: triangles of each level, coarsest first, the last one complete; `importance`: V numbers,
+/// above 0 for what the publisher wants to keep, or empty; `bits`: position bits;
 /// `threads`: at least 1; `progress`: called with the share done, 0 .. 1, from any thread.
 /// A level whose surface is e grid units (rms) off does without floor(log2(3 e)) bits: finer positions
-/// would not be seen. Result: one entry a level; shifts never grow towards the finest, which has 0.
+/// would not be seen. Where something is to be kept, its error counts as much as that of the whole.
+/// Result: one entry a level; shifts never grow towards the finest, which has 0.
 /// Cost: about 2 microseconds a sample and level. Deterministic for any number of threads.
 [[nodiscard]] std::vector<LevelError> measure_levels(
     std::span<const Vector3> exact,
     const GridMesh& mesh,
     std::span<const std::vector<Triangle>> levels,
+    std::span<const float> importance,
     int bits,
     unsigned threads,
     const std::function<void(double)>& progress

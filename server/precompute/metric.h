@@ -12,6 +12,7 @@ enum class Metric
 {
     Curvature,         ///< Quadrics weighted with curvature from a least-squares quadric fit.
     CurvatureBspline,  ///< The same with curvature from the paper's bicubic B-spline fit.
+    Quadrics,          ///< The same quadrics as Curvature, without its weight.
     Qem,               ///< Accumulated quadrics alone (Garland, Heckbert 1997).
     Normal,            ///< Normal deviation, the paper's "vector-based" comparison.
     EdgeLength,        ///< Squared edge length.
@@ -19,9 +20,10 @@ enum class Metric
 };
 
 /// All metrics with the names that the command line uses.
-inline constexpr std::array<std::pair<Metric, std::string_view>, 6> kMetricNames{{
+inline constexpr std::array<std::pair<Metric, std::string_view>, 7> kMetricNames{{
     {Metric::Curvature, "curvature"},
     {Metric::CurvatureBspline, "curvature-bspline"},
+    {Metric::Quadrics, "quadrics"},
     {Metric::Qem, "qem"},
     {Metric::Normal, "normal"},
     {Metric::EdgeLength, "edge-length"},

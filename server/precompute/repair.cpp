@@ -59,11 +59,20 @@ bool RepairReport::clean() const
            non_manifold_vertices == 0 && added_vertices == 0;
 }
 
-Result<RepairedMesh> repair_mesh(const IndexedMesh& mesh)
+Result<RepairedMesh> repair_mesh(const IndexedMesh& mesh, std::span<const float> importance)
 {
     VSPLIT_TRY(check_input(mesh));
+    if (!importance.empty() && importance.size() != mesh.positions.size())
+    {
+        return fail(
+            ErrorCode::UnsupportedInput,
+            "there are " + std::to_string(importance.size()) + " marks for " +
+                std::to_string(mesh.positions.size()) + " vertices"
+        );
+    }
     RepairedMesh result;
-    result.mesh = weld_and_clean(mesh, result.report);
+    result.importance.assign(importance.begin(), importance.end());
+    result.mesh = weld_and_clean(mesh, result.importance, result.report);
     if (result.mesh.triangles.empty())
     {
         return fail(ErrorCode::EmptyMesh, "no triangle is left after repair");
@@ -71,6 +80,14 @@ Result<RepairedMesh> repair_mesh(const IndexedMesh& mesh)
     const Orientation orientation = orient_faces(result.mesh, result.report);
     result.stitches = split_fans(result.mesh, orientation, result.report);
     turn_faces(result.mesh.triangles, orientation.reversed);
+    if (!result.importance.empty())
+    {
+        // Copies that the cutting made are appended.
+        for (std::size_t v = result.importance.size(); v < result.stitches.size(); ++v)
+        {
+            result.importance.push_back(result.importance[result.stitches[v]]);
+        }
+    }
     const auto linked = make_half_edge_mesh(result.mesh);
     if (!linked)
     {

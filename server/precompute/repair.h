@@ -4,6 +4,7 @@
 #include "mesh/indexed_mesh.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace vsplit::precompute {
@@ -31,6 +32,9 @@ struct RepairedMesh
     /// Per vertex of `mesh` the smallest vertex cut from the same source vertex (itself if it was
     /// not cut); empty when nothing was cut.
     std::vector<std::uint32_t> stitches;
+    /// Per vertex of `mesh` the largest importance among the input vertices that became it; empty
+    /// when none was given.
+    std::vector<float> importance;
     RepairReport report;
     std::uint32_t components = 0;
     std::uint32_t boundary_edges = 0;
@@ -40,9 +44,12 @@ struct RepairedMesh
 /// duplicate faces and isolated vertices, orients by flood fill (keeping the majority's direction in
 /// each component), cuts non-manifold edges and vertices into fans.
 /// `mesh`: any triangles, model units. Order of vertices and triangles is kept where they survive.
-/// Errors: EmptyMesh when no triangle is left, BadCoordinate, BadIndex, InputTooLarge, Internal (the
-/// result failed its own check).
+/// `importance`: one number for each vertex of `mesh` that is to follow it, or empty.
+/// Errors: EmptyMesh when no triangle is left, BadCoordinate, BadIndex, InputTooLarge,
+/// UnsupportedInput (`importance` has another length), Internal (the result failed its own check).
 /// Cost: linear but for one sort. Deterministic. Thread safe. Safe on untrusted input.
-[[nodiscard]] Result<RepairedMesh> repair_mesh(const IndexedMesh& mesh);
+[[nodiscard]] Result<RepairedMesh> repair_mesh(
+    const IndexedMesh& mesh, std::span<const float> importance = {}
+);
 
 }  // namespace vsplit::precompute

@@ -13,7 +13,10 @@ namespace vsplit::precompute {
 /// every vertex that is then unused; the order of the others stays.
 /// `mesh`: finite positions, indices in range. Fills welded_vertices, isolated_vertices,
 /// degenerate_faces and duplicate_faces of `report`. Cost: two sorts. Thread safe.
-[[nodiscard]] IndexedMesh weld_and_clean(const IndexedMesh& mesh, RepairReport& report);
+/// `importance`: per vertex, or empty; on return that of the result, a welded vertex having the largest.
+[[nodiscard]] IndexedMesh weld_and_clean(
+    const IndexedMesh& mesh, std::vector<float>& importance, RepairReport& report
+);
 
 /// Which faces belong together across edges, and which must turn round to agree.
 struct Orientation

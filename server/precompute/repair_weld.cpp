@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace vsplit::precompute {
 namespace {
@@ -121,9 +122,38 @@ std::vector<Triangle> clean_triangles(
     return proper;
 }
 
+/// Moves importance from the vertices of the input to those that they became.
+void follow_vertices(
+    std::vector<float>& importance,
+    const std::vector<std::uint32_t>& representative,
+    const std::vector<std::uint8_t>& used,
+    const std::vector<std::uint32_t>& renumbered
+)
+{
+    std::vector<float> result;
+    for (std::size_t vertex = 0; vertex < importance.size(); ++vertex)
+    {
+        const std::uint32_t kept = representative[vertex];
+        if (used[kept] == 0)
+        {
+            continue;
+        }
+        // A representative is the smallest of its vertices, so it comes first.
+        if (kept == vertex)
+        {
+            result.push_back(importance[vertex]);
+        }
+        float& largest = result[renumbered[kept]];
+        largest = std::max(largest, importance[vertex]);
+    }
+    importance = std::move(result);
+}
+
 }  // namespace
 
-IndexedMesh weld_and_clean(const IndexedMesh& mesh, RepairReport& report)
+IndexedMesh weld_and_clean(
+    const IndexedMesh& mesh, std::vector<float>& importance, RepairReport& report
+)
 {
     const std::size_t count = mesh.positions.size();
     const auto representative = weld(mesh, used_vertices(mesh.triangles, count), report);
@@ -149,6 +179,7 @@ IndexedMesh weld_and_clean(const IndexedMesh& mesh, RepairReport& report)
             vertex = renumbered[vertex];
         }
     }
+    follow_vertices(importance, representative, used, renumbered);
     return result;
 }
 

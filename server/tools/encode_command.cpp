@@ -1,6 +1,7 @@
 #include "commands.h"
 #include "core/file_io.h"
 #include "precompute/encode_mesh.h"
+#include "precompute/keep_region.h"
 #include "precompute/mesh_io.h"
 #include "precompute/repair.h"
 #include "progress_bar.h"
@@ -30,6 +31,8 @@ struct EncodeArguments
     std::string output;
     std::string metric;
     std::string json;
+    std::vector<std::string> keep_regions;  ///< As they were written.
+    std::string keep_mask;
     EncodeOptions options;
     bool quiet = false;
 };
@@ -47,6 +50,7 @@ struct EncodeOutcome
 {
     std::size_t input_vertices = 0;
     std::size_t input_faces = 0;
+    std::size_t kept_vertices = 0;  ///< Marked by --keep-region and --keep-mask.
     RepairedMesh repaired;
     EncodedMesh encoded;
     ToolSeconds seconds;
@@ -89,6 +93,7 @@ Json outcome_json(const EncodeArguments& arguments, const EncodeOutcome& outcome
         {"faces", info.face_count},
         {"position_bits", info.grid.bits},
         {"metric", arguments.metric},
+        {"kept_vertices", outcome.kept_vertices},
         {"bytes", info.file_bytes},
         {"header_bytes", info.header_bytes},
         {"bits_per_vertex", bits_per_vertex(info, info.file_bytes)},
@@ -115,6 +120,10 @@ void print_input(const EncodeArguments& arguments, const EncodeOutcome& outcome)
         outcome.repaired.components,
         outcome.repaired.boundary_edges
     );
+    if (outcome.kept_vertices > 0)
+    {
+        std::printf("kept for long: %zu vertices\n", outcome.kept_vertices);
+    }
     std::fflush(stdout);
 }
 
@@ -145,6 +154,37 @@ void print_outcome(const EncodeArguments& arguments, const EncodeOutcome& outcom
     );
 }
 
+/// Collects what --keep-region and --keep-mask mark: one number for each vertex, or none at all.
+Result<std::vector<float>> find_importance(
+    const EncodeArguments& arguments, const IndexedMesh& mesh
+)
+{
+    std::vector<float> importance;
+    if (!arguments.keep_mask.empty())
+    {
+        auto mask = precompute::read_keep_mask(arguments.keep_mask, mesh.positions.size());
+        VSPLIT_TRY(mask);
+        importance = std::move(*mask);
+    }
+    if (!arguments.keep_regions.empty())
+    {
+        importance.resize(mesh.positions.size(), 0.0F);
+    }
+    for (const std::string& region : arguments.keep_regions)
+    {
+        const auto sphere = precompute::parse_keep_sphere(region);
+        VSPLIT_TRY(sphere);
+        if (precompute::mark_sphere(mesh, *sphere, importance) == 0)
+        {
+            return fail(
+                ErrorCode::UnsupportedInput,
+                "--keep-region " + region + " holds no vertex of " + arguments.input
+            );
+        }
+    }
+    return importance;
+}
+
 /// Reads and repairs the input.
 Result<void> load(const EncodeArguments& arguments, EncodeOutcome& outcome)
 {
@@ -154,7 +194,12 @@ Result<void> load(const EncodeArguments& arguments, EncodeOutcome& outcome)
     outcome.seconds.read = watch.lap();
     outcome.input_vertices = mesh->positions.size();
     outcome.input_faces = mesh->triangles.size();
-    auto repaired = precompute::repair_mesh(*mesh);
+    const auto importance = find_importance(arguments, *mesh);
+    VSPLIT_TRY(importance);
+    outcome.kept_vertices = static_cast<std::size_t>(
+        std::ranges::count_if(*importance, [](float value) { return value > 0.0F; })
+    );
+    auto repaired = precompute::repair_mesh(*mesh, *importance);
     if (!repaired)
     {
         Error error = repaired.error();
@@ -171,10 +216,12 @@ Result<void> encode(const EncodeArguments& arguments, bool speak, EncodeOutcome&
 {
     Stopwatch watch;
     ProgressBar bar(speak);
+    EncodeOptions options = arguments.options;
+    options.importance = std::move(outcome.repaired.importance);
     auto encoded = precompute::encode_mesh(
         outcome.repaired.mesh,
         outcome.repaired.stitches,
-        arguments.options,
+        options,
         [&](std::string_view stage, double share) { bar.show(stage, share); }
     );
     if (!encoded)
@@ -246,6 +293,31 @@ void add_encode_command(CLI::App& app, Result<void>& result)
         ->capture_default_str();
     command->add_option(
         "--base-vertices", options.base_vertices, "Vertices to aim for in the base mesh [automatic]"
+    );
+    command
+        ->add_option(
+            "--level-vertices",
+            options.level_vertices,
+            "Vertices that levels are to have exactly, e.g. 2000,500 [automatic]"
+        )
+        ->delimiter(',')
+        ->allow_extra_args(false);
+    command
+        ->add_option(
+            "--keep-region",
+            arguments->keep_regions,
+            "Keep the vertices in this ball longest: X,Y,Z,R in model units; may be repeated"
+        )
+        ->type_name("X,Y,Z,R")
+        ->allow_extra_args(false)
+        ->check([](const std::string& text) {
+            const auto sphere = precompute::parse_keep_sphere(text);
+            return sphere ? std::string() : sphere.error().message;
+        });
+    command->add_option(
+        "--keep-mask",
+        arguments->keep_mask,
+        "Keep vertices longest by a text file with one number, 0 .. 1, for each vertex of IN"
     );
     constexpr unsigned kMostThreads = 256;
     command->add_option("--threads", options.threads, "Worker threads; do not change the result")

@@ -117,6 +117,24 @@ TEST(EncodeMesh, AimsForTheBaseThatIsAskedFor)
     }
 }
 
+TEST(EncodeMesh, HasLevelsOfTheSizesThatAreAskedFor)
+{
+    const IndexedMesh mesh = torus(40, 30, 0.02, 1);
+    for (const auto& [metric, name] : precompute::kMetricNames)
+    {
+        SCOPED_TRACE(name);
+        const std::vector<std::uint32_t> wanted{300, 1199, 70, 650, 5, 5000, 299};
+        const EncodedSample sample = encode(mesh, {.metric = metric, .level_vertices = wanted});
+        std::vector<std::uint32_t> sizes;
+        for (const codec::LevelInfo& level : sample.info.levels)
+        {
+            sizes.push_back(level.vertices);
+        }
+        EXPECT_THAT(sizes, ::testing::IsSupersetOf({64U, 70U, 299U, 300U, 650U, 1199U, 1200U}));
+        expect_exact(sample);
+    }
+}
+
 TEST(EncodeMesh, StopsWhereTopologyForbidsASmallerBase)
 {
     IndexedMesh many = tetrahedron();

@@ -139,18 +139,71 @@ TEST_F(EncodeCommand, GivesTheSameBytesForAnyNumberOfThreads)
     EXPECT_EQ(load("1.vsplit"), load("7.vsplit"));
 }
 
+TEST_F(EncodeCommand, KeepsMarkedRegionsLongest)
+{
+    ASSERT_TRUE(precompute::write_mesh(path("torus.ply"), bumpy_torus()));
+    const auto encode = [&](const std::vector<std::string>& extra) {
+        std::vector<std::string> arguments{"encode", path("torus.ply"), "--json", "-"};
+        arguments.insert(arguments.end(), extra.begin(), extra.end());
+        const Finished encoded = run(arguments);
+        EXPECT_EQ(encoded.status, 0) << encoded.err;
+        const Finished verified =
+            run({"verify", path("torus.vsplit"), "--against", path("torus.ply")});
+        EXPECT_EQ(verified.status, 0) << verified.err;
+        return std::pair(encoded.json()["kept_vertices"], load("torus.vsplit"));
+    };
+    const auto plain = encode({});
+    EXPECT_EQ(plain.first, 0);
+    const auto ball = encode({"--keep-region", "-3,0,0,1.5"});
+    EXPECT_GT(ball.first, 20);
+    EXPECT_LT(ball.first, 200);
+    EXPECT_NE(ball.second, plain.second);
+    const auto balls = encode({"--keep-region", "-3,0,0,1.5", "--keep-region", "3,0,0,1.5"});
+    EXPECT_GT(balls.first, ball.first);
+
+    std::string mask;
+    for (int vertex = 0; vertex < 512; ++vertex)
+    {
+        mask += vertex < 100 ? "1\n" : "0\n";
+    }
+    save("mask.txt", mask);
+    const auto masked = encode({"--keep-mask", path("mask.txt")});
+    EXPECT_EQ(masked.first, 100);
+    EXPECT_NE(masked.second, plain.second);
+}
+
+TEST_F(EncodeCommand, RefusesRegionsThatAreNone)
+{
+    ASSERT_TRUE(precompute::write_mesh(path("torus.ply"), bumpy_torus()));
+    const auto refused = [&](const std::string& option, const std::string& value, int status) {
+        const Finished finished = run({"encode", path("torus.ply"), option, value});
+        EXPECT_EQ(finished.status, status) << value;
+        EXPECT_EQ(files(), (std::vector<std::string>{"mask.txt", "torus.ply"}));
+        return finished.err;
+    };
+    save("mask.txt", "0 1 0 1\n");
+    EXPECT_THAT(
+        refused("--keep-mask", path("mask.txt"), 3), HasSubstr("has 4 numbers for 512 vertices")
+    );
+    EXPECT_THAT(refused("--keep-mask", path("none.txt"), 5), HasSubstr("there is no file"));
+    EXPECT_THAT(refused("--keep-region", "50,0,0,1", 3), HasSubstr("holds no vertex of"));
+    EXPECT_THAT(refused("--keep-region", "1,2,3", 2), HasSubstr("1,2,3 is not x,y,z,r"));
+}
+
 TEST_F(EncodeCommand, ObeysMetricPositionBitsAndBaseVertices)
 {
     ASSERT_TRUE(precompute::write_mesh(path("torus.ply"), bumpy_torus()));
     const std::vector<std::vector<std::string>> choices{
         {"--metric", "curvature-bspline"},
+        {"--metric", "quadrics"},
         {"--metric", "qem"},
         {"--metric", "normal"},
         {"--metric", "edge-length"},
         {"--metric", "paper"},
         {"--position-bits", "8"},
         {"--position-bits", "20"},
-        {"--base-vertices", "200"}};
+        {"--base-vertices", "200"},
+        {"--level-vertices", "100,300"}};
     for (const auto& choice : choices)
     {
         const Finished encoded = run(
