@@ -5,7 +5,7 @@
 #include "mesh/closest_point_tree.h"
 
 #include "core/assert.h"
-#include "mesh/lanes.h"
+#include "mesh/triangle_lanes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -234,43 +234,20 @@ ClosestPointTree::Box ClosestPointTree::build_leaf(
     return box;
 }
 
-/// The closest point lies inside the triangle or on one of its edges (Ericson, section 5.1.5); all
-/// four candidates are computed and the best one wins, without a branch. A sliver that is wrongly
-/// taken for "outside" is covered by its edges.
 void ClosestPointTree::closest_in_leaf(
     const Leaf& leaf, const std::array<float, 3>& point, Hit& best
 )
 {
-    using lanes::Float4;
-    using lanes::Vector4;
-    const Vector4 ab = lanes::load(leaf.edge_ab);
-    const Vector4 ac = lanes::load(leaf.edge_ac);
-    const Vector4 ap = lanes::splat(point) - lanes::load(leaf.corner);
-    const Float4 ab_ab = dot(ab, ab);
-    const Float4 ab_ac = dot(ab, ac);
-    const Float4 ac_ac = dot(ac, ac);
-    const Float4 ab_ap = dot(ab, ap);
-    const Float4 ac_ap = dot(ac, ap);
-
-    const Float4 along_ab = lanes::clamp01(ab_ap * lanes::load(leaf.inverse_ab));
-    const Float4 along_ac = lanes::clamp01(ac_ap * lanes::load(leaf.inverse_ac));
-    const Vector4 bc = ac - ab;
-    const Vector4 bp = ap - ab;
-    const Float4 along_bc = lanes::clamp01(dot(bc, bp) * lanes::load(leaf.inverse_bc));
-    Float4 squared = lanes::min(
-        lanes::min(squared_length(ap, along_ab, ab), squared_length(ap, along_ac, ac)),
-        squared_length(bp, along_bc, bc)
+    const lanes::Vector4 to_point = lanes::splat(point) - lanes::load(leaf.corner);
+    const lanes::TriangleInverses inverse{
+        lanes::load(leaf.inverse_ab),
+        lanes::load(leaf.inverse_ac),
+        lanes::load(leaf.inverse_bc),
+        lanes::load(leaf.inverse_determinant),
+    };
+    const lanes::Float4 squared = lanes::squared_distance(
+        to_point, lanes::load(leaf.edge_ab), lanes::load(leaf.edge_ac), inverse
     );
-
-    const Float4 inverse = lanes::load(leaf.inverse_determinant);
-    const Float4 s = (ac_ac * ab_ap - ab_ac * ac_ap) * inverse;
-    const Float4 t = (ab_ab * ac_ap - ab_ac * ab_ap) * inverse;
-    const Vector4 rest{
-        ap.x - s * ab.x - t * ac.x, ap.y - s * ab.y - t * ac.y, ap.z - s * ab.z - t * ac.z};
-    const Float4 zero = lanes::splat(0.0F);
-    const auto inside = (s >= zero) & (t >= zero) & (s + t <= lanes::splat(1.0F));
-    squared = inside ? lanes::min(squared, dot(rest, rest)) : squared;
-
     const Lanes distances = lanes::store(squared);
     for (std::size_t lane = 0; lane < kWidth; ++lane)
     {

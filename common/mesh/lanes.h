@@ -1,11 +1,15 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstring>
 
 /// Four floats that are computed on at once. GCC's and Clang's vector extension gives SSE, NEON or
 /// WebAssembly SIMD from one source, with the same IEEE results as scalar code.
 namespace vsplit::lanes {
+
+/// Floats in one register.
+inline constexpr std::size_t kLanes = 4;
 
 /// Four floats in one register.
 using Float4 = float __attribute__((vector_size(16)));
@@ -62,6 +66,19 @@ struct Vector4
 [[nodiscard]] inline Vector4 load(const std::array<std::array<float, 4>, 3>& values)
 {
     return {load(values[0]), load(values[1]), load(values[2])};
+}
+
+/// Loads four vectors from lists of x, y and z, `first` onwards.
+template <std::size_t N>
+[[nodiscard]] inline Vector4 load(
+    const std::array<std::array<float, N>, 3>& values, std::size_t first
+)
+{
+    Vector4 result;
+    std::memcpy(&result.x, values[0].data() + first, sizeof(Float4));
+    std::memcpy(&result.y, values[1].data() + first, sizeof(Float4));
+    std::memcpy(&result.z, values[2].data() + first, sizeof(Float4));
+    return result;
 }
 
 /// Returns four times the same point.

@@ -84,11 +84,11 @@ std::uint32_t spread_bits(std::uint32_t value)
     return (value | (value << 2)) & 0x0924'9249U;
 }
 
-std::vector<Point> in_morton_order(const std::vector<Point>& points)
+std::vector<SurfaceSample> in_morton_order(const std::vector<SurfaceSample>& samples)
 {
-    Point low = points.front();
+    Point low = samples.front().point;
     Point high = low;
-    for (const Point& point : points)
+    for (const auto& [point, triangle] : samples)
     {
         for (std::size_t axis = 0; axis < 3; ++axis)
         {
@@ -98,14 +98,14 @@ std::vector<Point> in_morton_order(const std::vector<Point>& points)
     }
     const float extent = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
     const float scale = extent > 0.0F ? ((1 << kMortonBits) - 1) / extent : 0.0F;
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> order(points.size());
-    for (std::uint32_t i = 0; i < points.size(); ++i)
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> order(samples.size());
+    for (std::uint32_t i = 0; i < samples.size(); ++i)
     {
         std::uint32_t code = 0;
         for (std::size_t axis = 0; axis < 3; ++axis)
         {
             const float cell = std::clamp(
-                (points[i][axis] - low[axis]) * scale,
+                (samples[i].point[axis] - low[axis]) * scale,
                 0.0F,
                 static_cast<float>((1 << kMortonBits) - 1)
             );
@@ -114,10 +114,10 @@ std::vector<Point> in_morton_order(const std::vector<Point>& points)
         order[i] = {code, i};
     }
     std::sort(order.begin(), order.end());
-    std::vector<Point> sorted(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i)
+    std::vector<SurfaceSample> sorted(samples.size());
+    for (std::size_t i = 0; i < samples.size(); ++i)
     {
-        sorted[i] = points[order[i].second];
+        sorted[i] = samples[order[i].second];
     }
     return sorted;
 }
@@ -128,13 +128,13 @@ struct OneWay
     double max_square = 0.0;
 };
 
-OneWay measure_one_way(const std::vector<Point>& samples, const ClosestPointTree& tree)
+OneWay measure_one_way(const std::vector<SurfaceSample>& samples, const ClosestPointTree& tree)
 {
     OneWay result;
     std::uint32_t hint = 0;
-    for (const Point& sample : samples)
+    for (const auto& [point, triangle] : samples)
     {
-        const double square = tree.squared_distance(sample, hint);
+        const double square = tree.squared_distance(point, hint);
         result.mean_square += square;
         result.max_square = std::max(result.max_square, square);
     }
@@ -144,7 +144,7 @@ OneWay measure_one_way(const std::vector<Point>& samples, const ClosestPointTree
 
 }  // namespace
 
-std::vector<std::array<float, 3>> sample_surface(
+std::vector<SurfaceSample> sample_surface(
     std::span<const std::array<float, 3>> positions,
     std::span<const Triangle> triangles,
     std::size_t count
@@ -158,7 +158,7 @@ std::vector<std::array<float, 3>> sample_surface(
         total += double_area(positions, triangles[i]);
         area_up_to[i] = total;
     }
-    std::vector<Point> points(count);
+    std::vector<SurfaceSample> samples(count);
     UniformNumbers uniform;
     std::size_t current = 0;
     for (std::size_t i = 0; i < count; ++i)
@@ -172,9 +172,11 @@ std::vector<std::array<float, 3>> sample_surface(
         }
         const double r1 = uniform.next();
         const double r2 = uniform.next();
-        points[i] = point_on_triangle(positions, triangles[current], r1, r2);
+        samples[i] = {
+            point_on_triangle(positions, triangles[current], r1, r2),
+            static_cast<std::uint32_t>(current)};
     }
-    return points.empty() ? points : in_morton_order(points);
+    return samples.empty() ? samples : in_morton_order(samples);
 }
 
 DistanceReference::DistanceReference(

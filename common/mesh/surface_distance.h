@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -17,13 +18,22 @@ struct SurfaceDistance
     double max = 0.0;  ///< The larger of both directions' largest sampled distance (Hausdorff).
 };
 
+/// A point on a surface and the triangle that it was drawn on.
+struct SurfaceSample
+{
+    std::array<float, 3> point{};
+    std::uint32_t triangle = 0;
+
+    friend bool operator==(const SurfaceSample&, const SurfaceSample&) = default;
+};
+
 /// Draws points on a mesh, stratified by area, the same for the same arguments on every machine, in an
 /// order that keeps neighbours together (Morton order).
 /// `positions`, `triangles`: a mesh with at least one triangle; `count`: how many.
-/// Result: `count` points. Cost: n log n in `count`. Thread safe.
+/// Result: `count` samples. Cost: n log n in `count`. Thread safe.
 /// Source of the parametrisation: Osada, Funkhouser, Chazelle, Dobkin, "Shape Distributions", 2002,
 /// section 3.
-[[nodiscard]] std::vector<std::array<float, 3>> sample_surface(
+[[nodiscard]] std::vector<SurfaceSample> sample_surface(
     std::span<const std::array<float, 3>> positions,
     std::span<const Triangle> triangles,
     std::size_t count
@@ -50,7 +60,7 @@ public:
     ) const;
 
 private:
-    std::vector<std::array<float, 3>> samples_;
+    std::vector<SurfaceSample> samples_;
     ClosestPointTree tree_;
 };
 

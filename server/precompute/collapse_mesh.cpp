@@ -73,11 +73,7 @@ bool CollapseMesh::ring(std::uint32_t center, OneRing& ring) const
     {
         return false;
     }
-    std::int32_t corner = corner_of_[center];
-    while (ring.boundary && opposite(previous(corner)) >= 0)
-    {
-        corner = previous(opposite(previous(corner)));
-    }
+    std::int32_t corner = first_corner(center);
     const std::int32_t first = corner;
     do
     {

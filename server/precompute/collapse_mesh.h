@@ -103,6 +103,49 @@ public:
         );
     }
 
+    /// Vertex at a corner.
+    [[nodiscard]] std::uint32_t vertex(std::int32_t c) const
+    {
+        return static_cast<std::uint32_t>(vertex_[static_cast<std::size_t>(c)]);
+    }
+
+    /// The next corner of the same face.
+    [[nodiscard]] static std::int32_t next(std::int32_t c) { return c % 3 == 2 ? c - 2 : c + 1; }
+
+    /// The previous corner of the same face.
+    [[nodiscard]] static std::int32_t previous(std::int32_t c)
+    {
+        return c % 3 == 0 ? c + 2 : c - 1;
+    }
+
+    /// A corner of a vertex that is not removed; on the boundary that of its first face.
+    [[nodiscard]] std::int32_t first_corner(std::uint32_t vertex) const
+    {
+        std::int32_t corner = corner_of_[vertex];
+        while (is_boundary(vertex) && opposite(previous(corner)) >= 0)
+        {
+            corner = previous(opposite(previous(corner)));
+        }
+        return corner;
+    }
+
+    /// The corner of the same vertex in the next face, counter-clockwise; -1 at the boundary.
+    [[nodiscard]] std::int32_t next_around(std::int32_t corner) const
+    {
+        const std::int32_t across = opposite(next(corner));
+        return across < 0 ? -1 : next(across);
+    }
+
+    /// True for faces that no collapse has dropped.
+    [[nodiscard]] bool has_face(std::uint32_t face) const { return vertex_[3 * face] >= 0; }
+
+    /// Vertices of a face. Precondition: has_face().
+    [[nodiscard]] Triangle triangle(std::uint32_t face) const
+    {
+        const auto corner = static_cast<std::int32_t>(3 * face);
+        return {vertex(corner), vertex(corner + 1), vertex(corner + 2)};
+    }
+
     /// Number of faces at the start; face indices stay below it.
     [[nodiscard]] std::size_t face_slots() const { return vertex_.size() / 3; }
 
@@ -113,21 +156,9 @@ public:
     [[nodiscard]] std::vector<std::uint32_t> vertices() const;
 
 private:
-    [[nodiscard]] static std::int32_t next(std::int32_t c) { return c % 3 == 2 ? c - 2 : c + 1; }
-
-    [[nodiscard]] static std::int32_t previous(std::int32_t c)
-    {
-        return c % 3 == 0 ? c + 2 : c - 1;
-    }
-
     [[nodiscard]] std::int32_t opposite(std::int32_t c) const
     {
         return opposite_[static_cast<std::size_t>(c)];
-    }
-
-    [[nodiscard]] std::uint32_t vertex(std::int32_t c) const
-    {
-        return static_cast<std::uint32_t>(vertex_[static_cast<std::size_t>(c)]);
     }
 
     void link_opposites();

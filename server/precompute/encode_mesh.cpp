@@ -90,12 +90,12 @@ LevelStyle style_for(Metric metric, std::size_t vertices, std::size_t all)
     return style;
 }
 
-/// The collapse sequence: levels of batches, and the triangles of the base and of each level.
+/// The collapse sequence.
 struct Sequence
 {
-    std::vector<std::vector<std::vector<codec::Collapse>>> levels;
-    std::vector<std::vector<Triangle>> triangles;
+    std::vector<LevelBatches> levels;
     std::vector<std::uint8_t> starts;  ///< By batch 1 when it may not join the level before it.
+    std::vector<Triangle> base;        ///< The triangles that it leaves.
 };
 
 Sequence make_sequence(
@@ -123,7 +123,6 @@ Sequence make_sequence(
     LevelBuilder builder(working, cost, exact, locked);
     const std::size_t base = next_stop(options, 0);
     Sequence sequence;
-    sequence.triangles.push_back(mesh.triangles);
     while (builder.vertex_count() > base)
     {
         const std::size_t before = builder.vertex_count();
@@ -139,7 +138,6 @@ Sequence make_sequence(
                                           kLeastShare * static_cast<double>(before);
         sequence.levels.push_back({std::move(level)});
         sequence.starts.push_back(arrived ? 1 : 0);
-        sequence.triangles.push_back(working.triangles());
         if (progress)
         {
             progress("collapse", 1.0 - static_cast<double>(builder.vertex_count()) / vertex_count);
@@ -149,6 +147,7 @@ Sequence make_sequence(
             break;
         }
     }
+    sequence.base = working.triangles();
     return sequence;
 }
 
@@ -156,27 +155,21 @@ Sequence make_sequence(
 /// its own chunk.
 void order_levels(Sequence& sequence)
 {
-    std::ranges::reverse(sequence.levels);
-    std::ranges::reverse(sequence.triangles);
-    std::ranges::reverse(sequence.starts);
-    Sequence joined;
-    joined.triangles.push_back(std::move(sequence.triangles.front()));
+    std::vector<LevelBatches> joined;
     std::size_t splits = kSmallestLevel;
-    for (std::size_t i = 0; i < sequence.levels.size(); ++i)
+    for (std::size_t i = sequence.levels.size(); i-- > 0;)
     {
         auto& batch = sequence.levels[i].front();
         if (splits + batch.size() > kSmallestLevel || sequence.starts[i] != 0 ||
-            joined.levels.back().size() == codec::kMaxBatches)
+            joined.back().size() == codec::kMaxBatches)
         {
             splits = 0;
-            joined.levels.emplace_back();
-            joined.triangles.emplace_back();
+            joined.emplace_back();
         }
         splits += batch.size();
-        joined.levels.back().push_back(std::move(batch));
-        joined.triangles.back() = std::move(sequence.triangles[i + 1]);
+        joined.back().push_back(std::move(batch));
     }
-    sequence = std::move(joined);
+    sequence.levels = std::move(joined);
 }
 
 codec::StreamPlan make_plan(
@@ -190,7 +183,7 @@ codec::StreamPlan make_plan(
     codec::StreamPlan plan;
     plan.grid = grid;
     plan.mesh = &mesh;
-    plan.base_triangles = std::move(sequence.triangles.front());
+    plan.base_triangles = std::move(sequence.base);
     plan.stitches = stitches;
     for (std::size_t level = 0; level < errors.size(); ++level)
     {
@@ -274,7 +267,7 @@ Result<EncodedMesh> encode_mesh(
     const auto errors = measure_levels(
         exact,
         quantised,
-        sequence.triangles,
+        sequence.levels,
         options.importance,
         grid.bits,
         options.threads,

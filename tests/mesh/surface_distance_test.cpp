@@ -21,8 +21,9 @@ SurfaceDistance distance_between(
 TEST(SampleSurface, PutsEveryPointOnTheSurface)
 {
     const auto plane = test::make_plane(2.0F, 0.5F, 3);
-    for (const auto& point : sample_surface(plane.positions, plane.triangles, 1000))
+    for (const auto& [point, triangle] : sample_surface(plane.positions, plane.triangles, 1000))
     {
+        ASSERT_LT(triangle, plane.triangles.size());
         ASSERT_FLOAT_EQ(point[2], 0.5F);
         ASSERT_GE(std::min(point[0], point[1]), -1e-6F);
         ASSERT_LE(std::max(point[0], point[1]), 2.0F + 1e-6F);
@@ -35,9 +36,10 @@ TEST(SampleSurface, GivesEachTriangleItsShareOfTheArea)
     const test::Surface surface{
         {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 9}, {3, 0, 9}, {0, 3, 9}}, {{0, 1, 2}, {3, 4, 5}}};
     int upper = 0;
-    for (const auto& point : sample_surface(surface.positions, surface.triangles, 1000))
+    for (const auto& [point, triangle] : sample_surface(surface.positions, surface.triangles, 1000))
     {
         upper += point[2] > 4.5F ? 1 : 0;
+        ASSERT_EQ(triangle, point[2] > 4.5F ? 1U : 0U);
     }
     EXPECT_NEAR(upper, 900, 1);
 }
@@ -46,9 +48,10 @@ TEST(SampleSurface, SkipsDegenerateTriangles)
 {
     const test::Surface surface{
         {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {50, 0, 0}}, {{3, 3, 3}, {0, 1, 2}, {0, 1, 3}}};
-    for (const auto& point : sample_surface(surface.positions, surface.triangles, 100))
+    for (const auto& [point, triangle] : sample_surface(surface.positions, surface.triangles, 100))
     {
         ASSERT_LE(point[0], 1.0F);
+        ASSERT_EQ(triangle, 1U);
     }
 }
 
@@ -60,7 +63,7 @@ TEST(SampleSurface, IsTheSameEveryTimeAndOnEveryMachine)
 
     const test::Surface triangle{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
     const auto pinned = sample_surface(triangle.positions, triangle.triangles, 1);
-    EXPECT_EQ(pinned, (std::vector<std::array<float, 3>>{{0x1.980766p-2F, 0x1.bb3202p-5F, 0.0F}}));
+    EXPECT_EQ(pinned, (std::vector<SurfaceSample>{{{0x1.980766p-2F, 0x1.bb3202p-5F, 0.0F}, 0}}));
 }
 
 TEST(SurfaceDistance, OfParallelPlanesIsTheirGap)

@@ -252,7 +252,13 @@ private:
                 return std::ranges::all_of(triangle, [&](auto v) { return importance_[v] > 0.0F; });
             }
         );
-        return sample_surface(floats, triangles, 2000);
+        std::vector<FloatPoint> points;
+        std::ranges::transform(
+            sample_surface(floats, triangles, 2000),
+            std::back_inserter(points),
+            &SurfaceSample::point
+        );
+        return points;
     }
 };
 
