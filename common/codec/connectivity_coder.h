@@ -5,6 +5,7 @@
 // the coarse geometry: edges inside a wedge are unusually long, triangles become better and valences
 // approach six. Encoder and decoder run this same code.
 
+#include "codec/choose.h"
 #include "codec/connectivity_model.h"
 #include "codec/context_model.h"
 #include "codec/float_log.h"
@@ -53,7 +54,7 @@ public:
             {
                 continue;
             }
-            const EdgeView view = view_of(cursor);
+            const EdgeView view = view_of(faces_[cursor]);
             if (!ask_split(cursor, view))
             {
                 faces_[cursor].state = FaceState::Refused;
@@ -66,41 +67,46 @@ public:
     }
 
 private:
-    bool ask_split(std::int32_t index, const EdgeView& view)
+    [[gnu::always_inline]] bool ask_split(std::int32_t index, const EdgeView& view)
     {
         const Face& face = faces_[index];
-        const auto& bucket = view.bucket;
-        const std::int32_t larger = std::max(bucket[0], bucket[1]);
-        const std::int32_t smaller = std::min(bucket[0], bucket[1]);
-        const std::int32_t best = std::max(larger, bucket[2]);
-        const std::int32_t second = std::max(smaller, std::min(larger, bucket[2]));
-        const int longest = bucket[2] > larger ? 2 : bucket[1] > bucket[0] ? 1 : 0;
-        const std::array<std::int32_t, 3> v{
-            valence(face.vertex[0]), valence(face.vertex[1]), valence(face.vertex[2])};
-        const std::int32_t most = std::min(15, std::max(v[0], std::max(v[1], v[2])));
-        const std::int32_t least = std::min(15, std::min(v[0], std::min(v[1], v[2])));
-        const std::int32_t ends = std::min(
-            15, std::max(v[longest == 2 ? 0 : longest + 1], v[longest == 0 ? 2 : longest - 1])
+        const auto [b0, b1, b2] = view.bucket;
+        const std::int32_t larger = greater_of(b0, b1);
+        const std::int32_t smaller = lesser_of(b0, b1);
+        const std::int32_t second = greater_of(smaller, lesser_of(larger, b2));
+        const std::int32_t v0 = lesser_of(15, valence(face.vertex[0]));
+        const std::int32_t v1 = lesser_of(15, valence(face.vertex[1]));
+        const std::int32_t v2 = lesser_of(15, valence(face.vertex[2]));
+        const std::int32_t most = greater_of(v0, greater_of(v1, v2));
+        const std::int32_t least = lesser_of(v0, lesser_of(v1, v2));
+        // The longest edge, the first of equal ones, with the greater valence of its ends.
+        const std::int32_t longest = greater_of(
+            greater_of(b0 * 64 + 32 + greater_of(v1, v2), b1 * 64 + 16 + greater_of(v2, v0)),
+            b2 * 64 + greater_of(v0, v1)
         );
-        const std::int32_t own = log_total(face);
+        const std::int32_t best = longest >> 6;
+        const std::int32_t ends = longest & 15;
         const std::int32_t longest_log =
-            std::max(face.edge_log[0], std::max(face.edge_log[1], face.edge_log[2]));
+            greater_of(face.edge_log[0], greater_of(face.edge_log[1], face.edge_log[2]));
         const std::array<std::int32_t*, 6> weights{
-            &model_.split_best_edge[static_cast<std::size_t>(view.free_neighbours * 32 + best)],
-            &model_.split_second_edge[static_cast<std::size_t>(second)],
-            &model_.split_edge_valence[static_cast<std::size_t>(ends * 12 + (best * 3 >> 3))],
-            &model_.split_shape[static_cast<std::size_t>(
-                clamp_int(longest_log - ((own - longest_log) >> 1) + 4, 0, 31)
-            )],
-            &model_.split_valences[static_cast<std::size_t>(least * 16 + most)],
-            &model_.split_size[static_cast<std::size_t>(
-                clamp_int((own * 85 >> 8) - view.local_log + 16, 0, 31)
-            )],
+            at(model_.split_best_edge, view.free_neighbours * 32 + best),
+            at(model_.split_second_edge, second),
+            at(model_.split_edge_valence, ends * 12 + (best * 3 >> 3)),
+            at(model_.split_shape,
+               clamp_int(longest_log - ((view.own - longest_log) >> 1) + 4, 0, 31)),
+            at(model_.split_valences, least * 16 + most),
+            at(model_.split_size, clamp_int((view.own * 85 >> 8) - view.local_log + 16, 0, 31)),
         };
         const bool wanted =
             Coder::kEncodes &&
             plan_->split_of_face[static_cast<std::size_t>(index)] != SplitPlan::kNoSplit;
         return code_logistic(coder_, weights, wanted, rates_.split);
+    }
+
+    template <typename Table>
+    static std::int32_t* at(Table& table, std::int32_t index)
+    {
+        return &table[static_cast<std::size_t>(index)];
     }
 
     Split code_wedge(std::int32_t seed, const EdgeView& view)
@@ -126,50 +132,59 @@ private:
 
     using KeptWeights = std::array<std::int32_t*, 5>;
 
-    KeptWeights kept_weights(std::int32_t seed, const EdgeView& view, std::size_t k)
+    /// Longest of the edges that come next round each corner of a face, see kept_weights().
+    std::array<std::int32_t, 3> edges_beyond(const Face& face, const EdgeView& view) const
     {
-        const Face& face = faces_[seed];
-        const std::size_t n = k == 2 ? 0 : k + 1;
-        const std::size_t p = k == 0 ? 2 : k - 1;
-        const std::int32_t longer = std::max(view.bucket[n], view.bucket[p]);
-        const std::int32_t shorter = std::min(view.bucket[n], view.bucket[p]);
-        const std::int32_t kept_valence = std::min(15, valence(face.vertex[k]));
-        std::int32_t beyond = 0;
-        if (view.bucket[p] != 0)
-        {
-            beyond = free_edge_bucket(previous_corner(previous_corner(face.opposite[p])), 0);
-        }
-        if (view.bucket[n] != 0)
-        {
-            beyond =
-                std::max(beyond, free_edge_bucket(next_corner(next_corner(face.opposite[n])), 0));
-        }
+        const auto left = [&](std::size_t k) {
+            return free_edge_bucket(next_corner(face.opposite[k]), view.beyond[k]) &
+                   mask_if(view.bucket[k] != 0);
+        };
+        const auto right = [&](std::size_t k) {
+            return free_edge_bucket(previous_corner(face.opposite[k]), view.beyond[k]) &
+                   mask_if(view.bucket[k] != 0);
+        };
         return {
-            &model_.kept_valence[static_cast<std::size_t>(kept_valence)],
-            &model_.kept_longer_edge[static_cast<std::size_t>(longer + (shorter != 0 ? 32 : 0))],
-            &model_.kept_shorter_edge[static_cast<std::size_t>(shorter + (longer > 14 ? 32 : 0))],
-            &model_.kept_far_edge[static_cast<std::size_t>(
-                clamp_int((3 * face.edge_log[k] - log_total(face)) / 3 + 16, 0, 31)
-            )],
-            &model_.kept_beyond[static_cast<std::size_t>((beyond >> 1) * 16 + kept_valence)],
+            greater_of(left(2), right(1)),
+            greater_of(left(0), right(2)),
+            greater_of(left(1), right(0))};
+    }
+
+    template <std::size_t k>
+    [[gnu::always_inline]] KeptWeights kept_weights(
+        const Face& face, const EdgeView& view, std::int32_t beyond
+    )
+    {
+        constexpr std::size_t n = k == 2 ? 0 : k + 1;
+        constexpr std::size_t p = k == 0 ? 2 : k - 1;
+        const std::int32_t longer = greater_of(view.bucket[n], view.bucket[p]);
+        const std::int32_t shorter = lesser_of(view.bucket[n], view.bucket[p]);
+        const std::int32_t kept_valence = lesser_of(15, valence(face.vertex[k]));
+        return {
+            at(model_.kept_valence, kept_valence),
+            at(model_.kept_longer_edge, longer + (shorter != 0 ? 32 : 0)),
+            at(model_.kept_shorter_edge, shorter + (longer > 14 ? 32 : 0)),
+            at(model_.kept_far_edge, clamp_int((3 * face.edge_log[k] - view.own) / 3 + 16, 0, 31)),
+            at(model_.kept_beyond, (beyond >> 1) * 16 + kept_valence),
         };
     }
 
-    Corner code_kept(std::int32_t seed, const EdgeView& view, const Split* planned)
+    /// Kept within a range in which no difference of two scores overflows.
+    static std::int32_t kept_score(const KeptWeights& weights)
     {
-        std::array<KeptWeights, 3> weights;
-        std::array<std::int32_t, 3> score{};
-        for (std::size_t k = 0; k < 3; ++k)
-        {
-            weights[k] = kept_weights(seed, view, k);
-            std::int32_t total = 0;
-            for (const std::int32_t* weight : weights[k])
-            {
-                total = wrapping_add(total, *weight);
-            }
-            // Kept within a range in which no difference of two scores overflows.
-            score[k] = clamp_int(total >> 8, -(1 << 20), 1 << 20);
-        }
+        return clamp_int(weight_sum(weights) >> 8, -(1 << 20), 1 << 20);
+    }
+
+    [[gnu::always_inline]] Corner code_kept(
+        std::int32_t seed, const EdgeView& view, const Split* planned
+    )
+    {
+        const Face& face = faces_[seed];
+        const auto beyond = edges_beyond(face, view);
+        const KeptWeights weights0 = kept_weights<0>(face, view, beyond[0]);
+        const KeptWeights weights1 = kept_weights<1>(face, view, beyond[1]);
+        const KeptWeights weights2 = kept_weights<2>(face, view, beyond[2]);
+        const std::int32_t score1 = kept_score(weights1);
+        const std::int32_t score2 = kept_score(weights2);
         std::size_t wanted = 3;
         if constexpr (Coder::kEncodes)
         {
@@ -178,25 +193,21 @@ private:
                 std::ranges::find(vertices, vertex(planned->first)) - vertices.begin()
             );
         }
-        const std::uint32_t first = squash(score[0] - log_sum(score[1], score[2]));
-        const std::uint32_t second = squash(score[1] - score[2]);
+        const std::uint32_t first = squash(kept_score(weights0) - log_sum(score1, score2));
+        const std::uint32_t second = squash(score1 - score2);
         std::size_t kept = 0;
         if (!coder_.bit(first, wanted == 0))
         {
             kept = coder_.bit(second, wanted == 1) ? 1 : 2;
         }
         const std::uint32_t share = ((65536U - first) * second) >> 16;
-        const std::array<std::uint32_t, 3> probability{first, share, 65536U - first - share};
-        for (std::size_t k = 0; k < 3; ++k)
-        {
-            const std::int32_t error =
-                (k == kept ? 65535 : 0) - static_cast<std::int32_t>(probability[k]);
-            const std::int32_t step = (error * rates_.wedge) >> 15;
-            for (std::int32_t* weight : weights[k])
-            {
-                *weight = wrapping_add(*weight, step);
-            }
-        }
+        const auto learn = [&](const KeptWeights& weights, bool is, std::uint32_t probability) {
+            const std::int32_t error = (is ? 65535 : 0) - static_cast<std::int32_t>(probability);
+            add_to_weights(weights, (error * rates_.wedge) >> 15);
+        };
+        learn(weights0, kept == 0, first);
+        learn(weights1, kept == 1, share);
+        learn(weights2, kept == 2, 65536U - first - share);
         return seed * 4 + static_cast<Corner>(kept);
     }
 
@@ -297,9 +308,6 @@ private:
         );
         const std::int32_t edge_log =
             faces_[face_of(crossing)].edge_log[static_cast<std::size_t>(crossing & 3)];
-        const auto at = [](auto& table, std::int32_t index) {
-            return &table[static_cast<std::size_t>(index)];
-        };
         return {
             at(model_.grow_start, ((kRight ? 2 : 0) + (again ? 1 : 0)) * 8 + length),
             at(model_.grow_edge, ratio_bucket(edge_ratio(crossing)) + 32 * std::min(length, 2)),

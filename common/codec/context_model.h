@@ -4,10 +4,13 @@
 // models); Mahoney, "Adaptive Weighing of Context Models for Lossless Data Compression", 2005 (sums in
 // the logistic domain). All arithmetic is integer, so that every machine learns the same model.
 
+#include "codec/choose.h"
+
 #include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <tuple>
 
 namespace vsplit::codec {
 
@@ -125,7 +128,7 @@ inline bool code_bit(Coder& coder, AdaptiveBit& model, bool value)
 {
     const std::uint32_t used = ((model.probability * 1023U) >> 10) + 32U;
     const bool result = coder.bit(used, value);
-    const std::int32_t target = result ? 65535 : 0;
+    const std::int32_t target = 65535 & mask_if(result);
     const std::int32_t step =
         ((target - model.probability) * std::int32_t{detail::kAdaptation[model.count]}) >> 16;
     model.probability = static_cast<std::uint16_t>(model.probability + step);
@@ -133,26 +136,37 @@ inline bool code_bit(Coder& coder, AdaptiveBit& model, bool value)
     return result;
 }
 
+/// Sum of the entries that a context selects. Written without a loop, so that the pointers stay in
+/// registers.
+template <std::size_t N>
+[[gnu::always_inline]] inline std::int32_t weight_sum(const std::array<std::int32_t*, N>& weights)
+{
+    const auto sum = [](const auto*... weight) {
+        return static_cast<std::int32_t>((static_cast<std::uint32_t>(*weight) + ...));
+    };
+    return std::apply(sum, weights);
+}
+
+/// Adds `step` to the entries that a context selects, one after another.
+template <std::size_t N>
+[[gnu::always_inline]] inline void add_to_weights(
+    const std::array<std::int32_t*, N>& weights, std::int32_t step
+)
+{
+    std::apply([&](auto*... weight) { ((*weight = wrapping_add(*weight, step)), ...); }, weights);
+}
+
 /// Codes one bit whose score is a sum of learned weights (units of 1/65536 nat).
 /// `weights`: the entries that the context selects; `rate`: learning rate, 1/32768.
 template <typename Coder, std::size_t N>
-inline bool code_logistic(
+[[gnu::always_inline]] inline bool code_logistic(
     Coder& coder, const std::array<std::int32_t*, N>& weights, bool value, std::int32_t rate
 )
 {
-    std::int32_t score = 0;
-    for (const std::int32_t* weight : weights)
-    {
-        score = wrapping_add(score, *weight);
-    }
-    const std::uint32_t probability = squash(score >> 8);
+    const std::uint32_t probability = squash(weight_sum(weights) >> 8);
     const bool result = coder.bit(probability, value);
-    const std::int32_t error = (result ? 65535 : 0) - static_cast<std::int32_t>(probability);
-    const std::int32_t step = (error * rate) >> 15;
-    for (std::int32_t* weight : weights)
-    {
-        *weight = wrapping_add(*weight, step);
-    }
+    const std::int32_t error = (65535 & mask_if(result)) - static_cast<std::int32_t>(probability);
+    add_to_weights(weights, (error * rate) >> 15);
     return result;
 }
 

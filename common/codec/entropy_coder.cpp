@@ -6,13 +6,6 @@
 #include <limits>
 
 namespace vsplit::codec {
-namespace {
-
-/// Below this the state of Draco's coder takes in its next byte.
-constexpr std::uint32_t kLeastAnsState = 4096;
-
-}  // namespace
-
 std::uint32_t BitEncoder::raw(std::uint32_t value, int count)
 {
     const std::uint32_t kept = value & static_cast<std::uint32_t>((1ULL << count) - 1ULL);

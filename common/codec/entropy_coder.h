@@ -13,6 +13,9 @@
 
 namespace vsplit::codec {
 
+/// Below this the state of Draco's binary rANS coder takes in its next byte.
+inline constexpr std::uint32_t kLeastAnsState = 4096;
+
 /// Rounds the probability of a one, in 1/65536, to the 8-bit probability of a zero that Draco's
 /// binary rANS coder takes, in 1/256. Never 0 or 256, so every bit stays codable.
 [[nodiscard]] inline std::uint8_t zero_probability(std::uint32_t one_probability)
@@ -64,10 +67,23 @@ public:
     /// Starts on a chunk's bytes, which must outlive the decoder. Errors: Truncated, BadChunk.
     [[nodiscard]] Result<void> start(std::span<const std::byte> bytes);
 
-    /// Reads one bit whose probability of being one is `one_probability` / 65536.
+    /// Reads one bit whose probability of being one is `one_probability` / 65536. Does what Draco's
+    /// rabs_desc_read() does, but never branches on the bit, which no processor can guess.
     bool bit(std::uint32_t one_probability, bool /*value*/ = false)
     {
-        return draco::rabs_desc_read(&ans_, zero_probability(one_probability)) != 0;
+        const std::uint32_t share = 256U - zero_probability(one_probability);
+        std::uint32_t state = ans_.state;
+        if (state < kLeastAnsState && ans_.buf_offset > 0)
+        {
+            state = state << 8 | ans_.buf[--ans_.buf_offset];
+        }
+        const std::uint32_t product = (state >> 8) * share;
+        const std::uint32_t rest = state & 255U;
+        const bool one = rest < share;
+        const std::uint32_t zero_state = state - product - share;
+        const std::uint32_t difference = product + rest - zero_state;
+        ans_.state = zero_state + (difference & (0U - static_cast<std::uint32_t>(one)));
+        return one;
     }
 
     /// Reads `count` (0 .. 32) raw bits.

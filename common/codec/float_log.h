@@ -21,7 +21,9 @@ template <int kStepsLog2>
 }
 
 /// Keeps a value within low .. high.
-[[nodiscard]] inline std::int32_t clamp_int(std::int32_t value, std::int32_t low, std::int32_t high)
+[[nodiscard]] constexpr std::int32_t clamp_int(
+    std::int32_t value, std::int32_t low, std::int32_t high
+)
 {
     return value < low ? low : value > high ? high : value;
 }

@@ -204,7 +204,7 @@ inline std::int32_t code_coordinate(
 {
     const std::int32_t rounded = round_half_up(expected);
     const float rest = expected - static_cast<float>(rounded);
-    const std::size_t sign_context = rest < -0.17F ? 0U : rest > 0.17F ? 2U : 1U;
+    const std::size_t sign_context = std::size_t{1} + (rest > 0.17F) - (rest < -0.17F);
     return rounded + code_integer(coder, model, actual - rounded, sign_context);
 }
 
