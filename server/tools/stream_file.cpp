@@ -117,28 +117,16 @@ Result<codec::StreamInfo> StreamFile::read_info()
 
 Result<std::uint64_t> StreamFile::complete_prefix() const
 {
-    if (size_ >= info_.file_bytes)
-    {
-        return info_.file_bytes;
-    }
-    std::uint64_t prefix = 0;
-    for (const codec::LevelInfo& level : info_.levels)
-    {
-        if (level.cumulative_bytes <= size_)
-        {
-            prefix = level.cumulative_bytes;
-        }
-    }
-    if (prefix == 0)
+    const std::uint64_t base_end = info_.levels.front().cumulative_bytes;
+    if (size_ < base_end)
     {
         return fail(
             ErrorCode::Truncated,
             path_.string() + " has " + std::to_string(size_) +
-                " bytes, but its base mesh ends at " +
-                std::to_string(info_.levels.front().cumulative_bytes)
+                " bytes, but its base mesh ends at " + std::to_string(base_end)
         );
     }
-    return prefix;
+    return codec::stop_offset(info_, {.bytes = size_});
 }
 
 Result<void> StreamFile::decode(

@@ -30,7 +30,7 @@ public:
     /// Name for messages.
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
-    /// Length of the longest prefix that ends with a level and that the file holds completely.
+    /// Length of the longest prefix that ends with a chunk and that the file holds completely.
     /// Error: Truncated when not even the base mesh is there.
     [[nodiscard]] Result<std::uint64_t> complete_prefix() const;
 

@@ -120,6 +120,26 @@ TEST_F(DecodeCommand, ShowsTheLastCompleteLevelOfACutFile)
     }
 }
 
+TEST_F(DecodeCommand, ShowsOfACutFileEveryCompleteChunk)
+{
+    const std::string input = std::string(VSPLIT_SOURCE_DIR) + "/assets/beast.ply";
+    ASSERT_EQ(run({"encode", input, "-o", path("torus.vsplit"), "--quiet"}).status, 0);
+    const std::string whole = load("torus.vsplit");
+    const auto chunks = run({"inspect", path("torus.vsplit"), "--json", "-"}).json()["chunks"];
+    int within_levels = 0;
+    for (const nlohmann::json& chunk : chunks)
+    {
+        const std::size_t end =
+            chunk["offset"].get<std::size_t>() + chunk["bytes"].get<std::size_t>();
+        save("torus.vsplit", whole.substr(0, end));
+        const nlohmann::json json = decode({});
+        EXPECT_EQ(json["bytes_used"], end);
+        EXPECT_EQ(json["vertices"], chunk["vertices"]);
+        within_levels += chunk["ends_level"] ? 0 : 1;
+    }
+    EXPECT_GT(within_levels, 0);
+}
+
 TEST_F(DecodeCommand, RefusesDamagedStreamsAndLeavesNoOutput)
 {
     encode_torus();
