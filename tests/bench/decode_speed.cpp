@@ -4,19 +4,15 @@
 
 #include "codec/stream_decoder.h"
 #include "core/file_io.h"
+#include "draco_mesh.h"
+#include "heap_meter.h"
 
 #include <CLI/CLI.hpp>
-#include <draco/compression/decode.h>
-#include <draco/compression/encode.h>
-#include <draco/mesh/mesh.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <ctime>
-#include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -60,93 +56,77 @@ Result<codec::StreamDecoder> decode_stream(std::span<const std::byte> file)
     return decoder;
 }
 
-std::unique_ptr<draco::Mesh> to_draco(const IndexedMesh& mesh)
+/// Heap that one call had in use at once, bytes, the decoded mesh included.
+template <typename Work>
+Result<std::uint64_t> heap_peak(const Work& work)
 {
-    auto result = std::make_unique<draco::Mesh>();
-    const auto points = static_cast<std::uint32_t>(mesh.positions.size());
-    result->set_num_points(points);
-    draco::GeometryAttribute position;
-    position.Init(draco::GeometryAttribute::POSITION, nullptr, 3, draco::DT_FLOAT32, false, 12, 0);
-    const int id = result->AddAttribute(position, true, points);
-    for (std::uint32_t v = 0; v < points; ++v)
+    tools::start_heap_meter();
+    const auto done = work();
+    const std::uint64_t peak = tools::stop_heap_meter();
+    VSPLIT_TRY(done);
+    return peak;
+}
+
+/// The processor times of each round.
+struct Times
+{
+    std::vector<double> ours;
+    std::vector<double> theirs;
+    std::vector<double> ratios;
+};
+
+Result<Times> take_times(
+    std::span<const std::byte> file, std::span<const char> coded, std::uint32_t rounds
+)
+{
+    Times times;
+    for (std::uint32_t round = 0; round < rounds; ++round)
     {
-        std::array<float, 3> value{};
-        std::ranges::transform(mesh.positions[v], value.begin(), [](double coordinate) {
-            return static_cast<float>(coordinate);
-        });
-        result->attribute(id)->SetAttributeValue(draco::AttributeValueIndex(v), value.data());
+        const double start = processor_seconds();
+        VSPLIT_TRY(decode_stream(file));
+        const double between = processor_seconds();
+        VSPLIT_TRY(decode_with_draco(coded));
+        const double end = processor_seconds();
+        times.ours.push_back(between - start);
+        times.theirs.push_back(end - between);
+        times.ratios.push_back(times.ours.back() / times.theirs.back());
     }
-    for (const Triangle& triangle : mesh.triangles)
-    {
-        draco::Mesh::Face face;
-        std::ranges::transform(triangle, face.begin(), [](std::uint32_t v) {
-            return draco::PointIndex(v);
-        });
-        result->AddFace(face);
-    }
-    return result;
+    return times;
 }
 
-/// What `draco_encoder -cl 10 -qp BITS` does.
-std::optional<draco::EncoderBuffer> encode_with_draco(const IndexedMesh& mesh, int bits)
-{
-    draco::Encoder encoder;
-    encoder.SetSpeedOptions(0, 0);
-    encoder.SetAttributeQuantization(draco::GeometryAttribute::POSITION, bits);
-    std::optional<draco::EncoderBuffer> buffer(std::in_place);
-    return encoder.EncodeMeshToBuffer(*to_draco(mesh), &*buffer).ok() ? std::move(buffer)
-                                                                      : std::nullopt;
-}
-
-bool decode_with_draco(const draco::EncoderBuffer& bytes)
-{
-    draco::DecoderBuffer buffer;
-    buffer.Init(bytes.data(), bytes.size());
-    draco::Decoder decoder;
-    return decoder.DecodeMeshFromBuffer(&buffer).ok();
-}
-
-/// Decodes both, in turns. `rounds`: how often each.
+/// Decodes both, in turns. `rounds`: how often each; 0 compares only sizes.
 Result<Json> measure(const std::string& path, std::uint32_t rounds)
 {
     const auto file = read_file(path);
     VSPLIT_TRY(file);
     auto decoded = decode_stream(*file);
     VSPLIT_TRY(decoded);
-    const auto draco =
-        encode_with_draco(codec::extract_mesh(*decoded, false), decoded->info()->grid.bits);
     const auto info = *decoded->info();
+    // Cut vertices stay apart: Draco codes the very mesh that the stream codes.
+    const auto coded = encode_with_draco(codec::extract_mesh(*decoded, false), info.grid.bits);
+    VSPLIT_TRY(coded);
     *decoded = codec::StreamDecoder();
-    if (!draco || !decode_with_draco(*draco))
-    {
-        return fail(ErrorCode::Internal, path + ": Draco does not code this mesh");
-    }
-    std::vector<double> ours;
-    std::vector<double> theirs;
-    std::vector<double> ratios;
-    for (std::uint32_t round = 0; round < rounds; ++round)
-    {
-        const double start = processor_seconds();
-        {
-            VSPLIT_TRY(decode_stream(*file));
-        }
-        const double between = processor_seconds();
-        static_cast<void>(decode_with_draco(*draco));
-        const double end = processor_seconds();
-        ours.push_back(between - start);
-        theirs.push_back(end - between);
-        ratios.push_back(ours.back() / theirs.back());
-    }
-    return Json{
+    Json json{
         {"stream", path},
         {"vertices", info.vertex_count},
         {"faces", info.face_count},
         {"rounds", rounds},
         {"stream_bytes", file->size()},
-        {"draco_bytes", draco->size()},
-        {"seconds", {{"vsplit", median(ours)}, {"draco", median(theirs)}}},
-        {"ratio", median(ratios)},
+        {"draco_bytes", coded->size()},
     };
+    if (rounds > 0)
+    {
+        const auto our_heap = heap_peak([&] { return decode_stream(*file); });
+        VSPLIT_TRY(our_heap);
+        const auto their_heap = heap_peak([&] { return decode_with_draco(*coded); });
+        VSPLIT_TRY(their_heap);
+        const auto times = take_times(*file, *coded, rounds);
+        VSPLIT_TRY(times);
+        json["seconds"] = {{"vsplit", median(times->ours)}, {"draco", median(times->theirs)}};
+        json["ratio"] = median(times->ratios);
+        json["heap_peak_bytes"] = {{"vsplit", *our_heap}, {"draco", *their_heap}};
+    }
+    return json;
 }
 
 int run(const std::vector<std::string>& streams, std::uint32_t rounds)
@@ -175,12 +155,13 @@ int main(int argc, char** argv)
         "Compares the processor time that decoding and applying a whole stream takes with that of "
         "Draco, compression level 10, for the same mesh at the same position bits. Prints JSON: "
         "per "
-        "stream the median seconds of both and the median of their ratio."
+        "stream the sizes, the median seconds of both, the median of their ratio and heap peaks."
     );
     std::vector<std::string> streams;
     std::uint32_t rounds = 9;
     app.add_option("STREAM", streams, "The .vsplit files")->required();
-    app.add_option("--rounds", rounds, "Decode each so often")->check(CLI::Range(1U, 10000U));
+    app.add_option("--rounds", rounds, "Decode each so often; 0: sizes only")
+        ->check(CLI::Range(0U, 10000U));
     CLI11_PARSE(app, argc, argv);
     return vsplit::bench::run(streams, rounds);
 }

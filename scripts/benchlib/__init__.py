@@ -1,0 +1,1 @@
+"""What scripts/bench is made of: programs to run, peers, measurements, tables, plots, report."""

@@ -1,0 +1,98 @@
+#!/usr/bin/env python3
+"""Tests of what scripts/bench computes from its measurements (scripts/benchlib/tables.py, goals.py)."""
+
+import pathlib
+import sys
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
+
+from benchlib import goals, tables
+
+
+def lod(size, rms, largest=1.0):
+    return {"bytes": size, "rms": rms, "max": largest}
+
+
+def model(prefixes, files, vertices=800):
+    return {
+        "name": "thing", "vertices": vertices, "bytes": 1100, "draco_bytes": 1000,
+        "prefixes": [{"rate": rate, **shown} for rate, shown in prefixes.items()],
+        "peers": {"meshopt": files, "lindstrom-turk": files},
+    }
+
+
+class TablesTest(unittest.TestCase):
+    def test_geometric_mean_is_the_root_of_the_product(self):
+        self.assertAlmostEqual(tables.geometric_mean([2, 8]), 4)
+        self.assertAlmostEqual(tables.geometric_mean(iter([0.5, 2.0, 1.0])), 1)
+        self.assertIsNone(tables.geometric_mean([]))
+
+    def test_best_file_is_the_best_that_fits_not_the_largest(self):
+        files = [lod(100, 0.5), lod(90, 0.2), lod(80, 0.3), lod(101, 0.1)]
+        self.assertEqual(tables.best_file(files, 100, "rms"), lod(90, 0.2))
+        self.assertEqual(tables.best_file(files, 101, "rms"), lod(101, 0.1))
+        self.assertIsNone(tables.best_file(files, 79, "rms"))
+
+    def test_best_file_of_equals_is_the_smallest(self):
+        self.assertEqual(tables.best_file([lod(90, 0.2), lod(80, 0.2)], 99, "rms"), lod(80, 0.2))
+
+    def test_envelope_keeps_what_nothing_smaller_betters(self):
+        files = [lod(30, 0.4), lod(10, 0.9), lod(20, 0.5), lod(25, 0.6), lod(20, 0.7)]
+        self.assertEqual(tables.envelope(files), [lod(10, 0.9), lod(20, 0.5), lod(30, 0.4)])
+
+    def test_point_takes_the_hausdorff_distance_of_the_file_with_the_least_rms(self):
+        files = [lod(100, 0.2, 3.0), lod(99, 0.3, 2.0), lod(120, 0.1, 1.0)]
+        at_1 = tables.point(model({1: lod(70, 0.1, 6.0)}, files), 1, "meshopt")
+        self.assertEqual(at_1["budget"], 100)
+        self.assertEqual(tables.ratios([at_1], "rms"), ([0.5], []))
+        self.assertEqual(tables.ratios([at_1], "max"), ([2.0], []))
+        self.assertEqual(tables.ratios([at_1], "max", "least_max"), ([3.0], []))
+
+    def test_points_without_a_picture_on_either_side_are_left_out_and_listed(self):
+        nothing = {"bytes": None, "rms": None, "max": None}
+        shown = model({0.5: nothing, 1: lod(90, 0.3), 2: lod(150, 0.3)}, [lod(110, 0.6)])
+        points = [tables.point(shown, rate, "meshopt") for rate in (0.5, 1, 2, 4)]
+        values, left_out = tables.ratios(points, "rms")
+        self.assertEqual(values, [0.5])
+        self.assertEqual([p["rate"] for p in left_out], [0.5, 1, 4])
+
+    def test_verdict_knows_both_directions(self):
+        self.assertEqual(tables.verdict(1.1, 1.1, 0.95), "reached")
+        self.assertEqual(tables.verdict(0.95, 1.1, 0.95), "stretch")
+        self.assertEqual(tables.verdict(1.11, 1.1, 0.95), "short")
+        self.assertEqual(tables.verdict(60, 60, 150, larger_is_better=True), "reached")
+        self.assertEqual(tables.verdict(59, 60, 150, larger_is_better=True), "short")
+        self.assertEqual(tables.verdict(151, 60, 150, larger_is_better=True), "stretch")
+        self.assertEqual(tables.verdict(None, 60), "not measured")
+        self.assertEqual(tables.verdict(0.0, 1.0), "reached")
+
+    def test_growth_is_the_largest_rise_per_vertex_over_the_smallest_mesh(self):
+        rows = [{"vertices": 10, "s": 1.0}, {"vertices": 100, "s": 11.0}, {"vertices": 50, "s": 6.0}]
+        self.assertAlmostEqual(tables.growth(rows, "s"), 1.2)
+        self.assertIsNone(tables.growth(rows[:1], "s"))
+
+    def test_median_is_the_middle(self):
+        self.assertEqual(tables.median([3, 1, 2]), 2)
+        self.assertIsNone(tables.median([]))
+
+
+class GoalsTest(unittest.TestCase):
+    def test_size_rows_give_the_mean_and_name_the_worst(self):
+        good = dict(model({}, []), name="good", bytes=400, draco_bytes=500)
+        bad = dict(model({}, []), name="bad", bytes=1000, draco_bytes=500)
+        mean, worst = goals.size_rows([good, bad])
+        self.assertAlmostEqual(mean["value"], (0.8 * 2) ** 0.5)
+        self.assertEqual(mean["verdict"], "short")
+        self.assertEqual((worst["value"], worst["verdict"]), (2.0, "short"))
+        self.assertIn("bad", worst["measured"])
+
+    def test_distance_rows_count_the_points_left_out(self):
+        shown = model({1: lod(90, 0.3, 2.0), 2: lod(190, 0.3, 2.0)}, [lod(90, 0.6, 4.0)])
+        rows = list(goals.distance_rows([shown]))
+        self.assertTrue(all(row["value"] == 0.5 for row in rows))
+        self.assertTrue(all("2 points, 2 left out" in row["measured"] for row in rows))
+
+
+if __name__ == "__main__":
+    unittest.main()
