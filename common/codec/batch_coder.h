@@ -9,7 +9,9 @@
 #include "codec/refinement_mesh.h"
 #include "core/result.h"
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -149,15 +151,21 @@ template <typename Coder>
 {
     Point* const next = state.mesh.points() + state.mesh.vertex_count();
     const std::int32_t most = state.max_index();
-    constexpr std::size_t kAhead = 4;
-    for (std::size_t i = 0; i < state.splits.size(); ++i)
+    const std::span<const Split> splits = state.splits;
+    RingFrames frames;
+    for (std::size_t i = 0; i < splits.size(); ++i)
     {
-        if (i + kAhead < state.splits.size())
+        const std::size_t place = i % RingFrames::kMost;
+        if (place == 0)
         {
-            prefetch_ring(state.mesh, state.splits[i + kAhead]);
+            const auto rest = splits.subspan(i);
+            frames.compute(state.mesh, rest.first(std::min(RingFrames::kMost, rest.size())));
+            frames.predict(state.weights);
         }
-        const Split& split = state.splits[i];
-        const RingFrame frame = make_frame(collect_ring(state.mesh, split), split.kind);
+        if (i + RingFrames::kMost < splits.size())
+        {
+            prefetch_ring(state.mesh, splits[i + RingFrames::kMost]);
+        }
         std::array<std::int32_t, 3> wanted{};
         if constexpr (Coder::kEncodes)
         {
@@ -166,9 +174,8 @@ template <typename Coder>
         const auto position = code_position(
             coder,
             state.model.geometry,
-            frame,
-            state.weights,
-            split.kind != SplitKind::Interior,
+            frames.prediction(place),
+            splits[i].kind != SplitKind::Interior,
             wanted
         );
         for (const std::int32_t coordinate : position)

@@ -287,16 +287,16 @@ private:
         VSPLIT_TRY(code_connectivity(bits, state_, count, &plan));
         std::vector<std::array<std::int32_t, 3>> positions;
         std::vector<FitSample> samples;
-        for (const Split& split : state_.splits)
+        const auto frames = ring_frames(state_.mesh, state_.splits);
+        for (std::size_t i = 0; i < frames.size(); ++i)
         {
+            const Split& split = state_.splits[i];
             const std::uint32_t removed = batch[split.source].removed;
             positions.push_back(on_grid(removed, state_.shift));
             place_vertex(removed);
             if (split.kind == SplitKind::Interior)
             {
-                samples.push_back(
-                    {make_frame(collect_ring(state_.mesh, split), split.kind), positions.back()}
-                );
+                samples.push_back({frames[i], positions.back()});
             }
         }
         const auto fitted = fit_weights(samples, state_.weights);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "codec/geometry_coder.h"
+#include "codec/ring_frames.h"
 
 #include <array>
 #include <cstdint>
