@@ -9,10 +9,10 @@ namespace vsplit::proto {
 
 inline constexpr std::uint32_t kStreamMagic = 0x54505356;  ///< "VSPT", little-endian.
 inline constexpr std::uint8_t kStreamMajor = 0;
-inline constexpr std::uint8_t kStreamMinor = 1;
+inline constexpr std::uint8_t kStreamMinor = 2;
 
-/// Size of the part of the header that has a fixed layout, bytes.
-inline constexpr std::size_t kFixedHeaderBytes = 16;
+/// Bytes from which the header's length is known: magic, version, and a length of four bytes.
+inline constexpr std::size_t kHeaderProbeBytes = 9;
 
 inline constexpr int kMinPositionBits = 8;
 inline constexpr int kMaxPositionBits = 20;
@@ -25,15 +25,14 @@ inline constexpr std::uint32_t kMaxHeaderBytes = 1U << 24;
 /// Chunks are cut so that they stay near this size; a reader accepts larger ones within its limits.
 inline constexpr std::uint32_t kTargetChunkBytes = 64U * 1024U;
 
-/// Length of the CRC-32C that ends every chunk and is part of its length.
+/// Length of the CRC-32C that ends the header and every chunk and is part of their length.
 inline constexpr std::uint32_t kChunkChecksumBytes = 4;
 
 /// Added to the position bits when the grid's four numbers are binary32 instead of binary64.
 inline constexpr std::uint8_t kSinglePrecisionGrid = 0x80;
 
-/// Flags in the low bits of a row's length.
-inline constexpr std::uint64_t kRowContinuesLevel = 1;  ///< The level goes on in the next chunk.
-inline constexpr std::uint64_t kRowHasBoundary = 2;     ///< A count of boundary splits follows.
+/// Added to the position bits when a table of attributes follows.
+inline constexpr std::uint8_t kHasAttributes = 0x20;
 
 /// What a chunk holds. Kinds below 64 are required: a reader that does not know one refuses the
 /// stream; kinds from 64 on are optional and may be skipped by their length.

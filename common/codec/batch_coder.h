@@ -36,9 +36,6 @@ struct BatchState
     [[nodiscard]] std::int32_t max_index() const { return ((1 << bits) - 1) >> shift; }
 };
 
-/// Bits of the field that tells a level's shift.
-inline constexpr int kShiftBits = 5;
-
 /// Bits of the field that tells how many batches a level has, less one.
 inline constexpr int kBatchCountBits = 3;
 
@@ -48,22 +45,13 @@ inline constexpr std::size_t kMaxBatches = std::size_t{1} << kBatchCountBits;
 /// Bits of the field that tells how many splits a batch has, unless it is the chunk's last one.
 inline constexpr int kSplitCountBits = 12;
 
-/// Starts a level: its shift, one bit an axis and step for every known vertex. `full`: full-precision positions by vertex, encoder only.
-/// Error: BadChunk when the shift grows. Safe on untrusted input.
+/// Starts a level of shift `shift`, at most that of the level before: one bit an axis and step for every
+/// known vertex. `full`: full-precision positions by vertex, encoder only. Safe on untrusted input.
 template <typename Coder>
-[[nodiscard]] Result<void> code_level_start(
-    Coder& coder,
-    BatchState& state,
-    int new_shift,
-    std::span<const std::array<std::int32_t, 3>> full
+void code_level_start(
+    Coder& coder, BatchState& state, int shift, std::span<const std::array<std::int32_t, 3>> full
 )
 {
-    const auto shift =
-        static_cast<int>(coder.raw(static_cast<std::uint32_t>(new_shift), kShiftBits));
-    if (shift > state.shift)
-    {
-        return fail(ErrorCode::BadChunk, "a level takes precision back");
-    }
     Point* const points = state.mesh.points();
     const int steps = state.shift - shift;
     const auto scale = static_cast<float>(1 << steps);
@@ -84,7 +72,6 @@ template <typename Coder>
         points[v].z = points[v].z * scale + static_cast<float>(low[2]);
     }
     state.shift = shift;
-    return {};
 }
 
 /// Starts a batch: measures the edges and frees every face.

@@ -1,8 +1,6 @@
 // Based on: Duda, "Asymmetric numeral systems", 2013, in Draco's implementation (rABS).
 #include "codec/entropy_coder.h"
 
-#include "core/byte_reader.h"
-
 #include <limits>
 
 namespace vsplit::codec {
@@ -35,7 +33,6 @@ void BitEncoder::finish(ByteWriter& out)
         draco::rabs_desc_write(&coder, *symbol & 1, static_cast<draco::AnsP8>(*symbol >> 1));
     }
     const auto length = static_cast<std::size_t>(draco::ans_write_end(&coder));
-    out.write_varint(raw_.size());
     out.write_bytes(raw_);
     out.write_bytes(std::as_bytes(std::span(buffer).first(length)));
     modelled_.clear();
@@ -46,24 +43,16 @@ void BitEncoder::finish(ByteWriter& out)
 
 Result<void> BitDecoder::start(std::span<const std::byte> bytes)
 {
-    ByteReader reader(bytes);
-    const auto raw_bytes = reader.read_varint();
-    VSPLIT_TRY(raw_bytes);
-    if (*raw_bytes > reader.remaining())
-    {
-        return fail(ErrorCode::BadChunk, "the raw bits are longer than their chunk");
-    }
-    raw_ = *reader.read_bytes(static_cast<std::size_t>(*raw_bytes));
+    raw_ = bytes;
     raw_position_ = 0;
     pending_ = 0;
     pending_bits_ = 0;
-    const auto modelled = *reader.read_bytes(reader.remaining());
     constexpr auto kMost = static_cast<std::size_t>(std::numeric_limits<int>::max());
-    if (modelled.empty() || modelled.size() > kMost ||
+    if (bytes.empty() || bytes.size() > kMost ||
         draco::ans_read_init(
             &ans_,
-            reinterpret_cast<const std::uint8_t*>(modelled.data()),
-            static_cast<int>(modelled.size())
+            reinterpret_cast<const std::uint8_t*>(bytes.data()),
+            static_cast<int>(bytes.size())
         ) != 0)
     {
         return fail(ErrorCode::BadChunk, "the modelled bits do not start");
@@ -80,7 +69,7 @@ Result<void> BitDecoder::finish() const
     {
         ans.state = ans.state << 8 | ans.buf[--ans.buf_offset];
     }
-    if (raw_position_ != raw_.size() || pending_ != 0 || ans.buf_offset != 0 ||
+    if (raw_position_ != static_cast<std::size_t>(ans.buf_offset) || pending_ != 0 ||
         draco::ans_read_end(&ans) == 0)
     {
         return fail(ErrorCode::BadChunk, "a chunk does not end where its contents do");

@@ -45,8 +45,8 @@ public:
     /// Takes the low `count` (0 .. 32) bits of `value` as they are; returns them.
     std::uint32_t raw(std::uint32_t value, int count);
 
-    /// Appends the chunk's bytes to `out` and forgets its bits. Precondition: none. Layout: length of
-    /// the raw part as varint, raw part, rANS part (proto/STREAM_FORMAT.md, "Bit streams").
+    /// Appends the chunk's bytes to `out` and forgets its bits. Precondition: none. Layout: raw part,
+    /// read forwards, then rANS part, read backwards (proto/STREAM_FORMAT.md, "Bit streams").
     void finish(ByteWriter& out);
 
 private:
@@ -64,7 +64,7 @@ public:
     /// Tells templates which side they are on.
     static constexpr bool kEncodes = false;
 
-    /// Starts on a chunk's bytes, which must outlive the decoder. Errors: Truncated, BadChunk.
+    /// Starts on a chunk's bytes, which must outlive the decoder. Error: BadChunk.
     [[nodiscard]] Result<void> start(std::span<const std::byte> bytes);
 
     /// Reads one bit whose probability of being one is `one_probability` / 65536. Does what Draco's
@@ -103,12 +103,19 @@ public:
         return value;
     }
 
+    /// Tells that more bits were read than there are, so that finish() will fail for certain.
+    [[nodiscard]] bool exhausted() const
+    {
+        const auto end = static_cast<std::size_t>(ans_.buf_offset);
+        return raw_position_ > end || (raw_position_ == end && ans_.state < kLeastAnsState);
+    }
+
     /// Checks that exactly the chunk's bits were read. Error: BadChunk.
     [[nodiscard]] Result<void> finish() const;
 
 private:
     draco::AnsDecoder ans_;
-    std::span<const std::byte> raw_;
+    std::span<const std::byte> raw_;  ///< All bytes; those at the end belong to ans_.
     std::size_t raw_position_ = 0;
     std::uint64_t pending_ = 0;
     int pending_bits_ = 0;

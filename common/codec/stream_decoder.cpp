@@ -194,14 +194,9 @@ private:
 
     Result<void> decode_base(const ChunkInfo& chunk, std::span<const std::byte> bytes, Step& step)
     {
-        if (bytes.empty() || static_cast<int>(bytes[0]) >= info_->grid.bits || !chunk.ends_level)
-        {
-            return fail(ErrorCode::BadChunk, "the base chunk is malformed");
-        }
-        state_.shift = static_cast<int>(bytes[0]);
+        state_.shift = chunk.shift;
         const auto max_index = static_cast<std::uint32_t>(state_.max_index());
-        const auto base =
-            decode_base_mesh(bytes.subspan(1), chunk.vertices, chunk.faces, max_index);
+        const auto base = decode_base_mesh(bytes, chunk.vertices, chunk.faces, max_index);
         VSPLIT_TRY(base);
         VSPLIT_TRY(state_.mesh.set_base(*base, state_.max_index()));
         for (std::uint32_t f = 0; f < chunk.faces; ++f)
@@ -221,7 +216,7 @@ private:
         std::uint32_t batches = 1;
         if (info_->chunks[next_ - 1].ends_level)
         {
-            VSPLIT_TRY(code_level_start(bits, state_, 0, {}));
+            code_level_start(bits, state_, chunk.shift, {});
             batches = bits.raw(0, kBatchCountBits) + 1;
             start_batch(state_);
         }

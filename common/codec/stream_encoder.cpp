@@ -77,6 +77,7 @@ private:
         chunk.bytes = static_cast<std::uint32_t>(bytes.size()) + proto::kChunkChecksumBytes;
         chunk.vertices = state_.mesh.vertex_count();
         chunk.faces = state_.mesh.face_count();
+        chunk.shift = state_.shift;
         if (ends != nullptr)
         {
             chunk.rms_error = ends->rms_error;
@@ -136,10 +137,7 @@ private:
         state_.bits = plan_.grid.bits;
         state_.shift = level.shift;
         VSPLIT_TRY(state_.mesh.set_base(encoded->decoded, state_.max_index()));
-        ByteWriter chunk;
-        chunk.write(static_cast<std::uint8_t>(level.shift));
-        chunk.write_bytes(encoded->bytes);
-        add_chunk(proto::ChunkKind::Base, chunk.view(), &level);
+        add_chunk(proto::ChunkKind::Base, encoded->bytes, &level);
         return {};
     }
 
@@ -228,7 +226,11 @@ private:
     {
         BitEncoder bits;
         const int shift = state_.shift;
-        VSPLIT_TRY(code_level_start(bits, state_, level.shift, full_));
+        if (level.shift > shift)
+        {
+            return fail(ErrorCode::Internal, "a level takes precision back");
+        }
+        code_level_start(bits, state_, level.shift, full_);
         bits.raw(static_cast<std::uint32_t>(level.batches.size() - 1), kBatchCountBits);
         for (std::size_t i = 0; i + 1 < level.batches.size(); ++i)
         {

@@ -1,4 +1,6 @@
+#include "codec/entropy_coder.h"
 #include "codec/error_scale.h"
+#include "codec/index_coder.h"
 #include "codec/stream_info.h"
 #include "core/byte_reader.h"
 #include "core/crc32c.h"
@@ -11,13 +13,8 @@
 namespace vsplit::codec {
 namespace {
 
-constexpr std::size_t kChecksumOffset = 12;
-
-std::uint32_t header_checksum(std::span<const std::byte> header)
-{
-    const std::uint32_t start = crc32c(header.first(kChecksumOffset));
-    return crc32c(header.subspan(proto::kFixedHeaderBytes), start);
-}
+/// Magic and version, behind which the header's length stands.
+constexpr std::size_t kLengthOffset = 5;
 
 /// Reads a varint that must lie in low .. high.
 Result<std::uint32_t> read_bounded(
@@ -34,7 +31,7 @@ Result<std::uint32_t> read_bounded(
         return fail(
             ErrorCode::BadHeader,
             std::string("the header's ") + field + " is out of range",
-            proto::kFixedHeaderBytes + reader.position()
+            reader.position()
         );
     }
     return static_cast<std::uint32_t>(*value);
@@ -52,13 +49,14 @@ Result<double> read_number(ByteReader& reader, bool single)
     });
 }
 
-Result<void> read_grid(ByteReader& reader, StreamInfo& info)
+/// Result: whether a table of attributes follows.
+Result<bool> read_grid(ByteReader& reader, StreamInfo& info)
 {
     const auto bits = reader.read<std::uint8_t>();
-    const int count = bits ? *bits & ~proto::kSinglePrecisionGrid : 0;
+    const int count = bits ? *bits & ~(proto::kSinglePrecisionGrid | proto::kHasAttributes) : 0;
     if (count < proto::kMinPositionBits || count > proto::kMaxPositionBits)
     {
-        return fail(ErrorCode::BadHeader, "the number of position bits is out of range", 16);
+        return fail(ErrorCode::BadHeader, "the number of position bits is out of range");
     }
     info.grid.bits = count;
     const bool single = (*bits & proto::kSinglePrecisionGrid) != 0;
@@ -67,28 +65,17 @@ Result<void> read_grid(ByteReader& reader, StreamInfo& info)
         const auto value = read_number(reader, single);
         if (!value || !std::isfinite(*value))
         {
-            return fail(ErrorCode::BadHeader, "the grid's origin is not finite", 17);
+            return fail(ErrorCode::BadHeader, "the grid's origin is not finite");
         }
         coordinate = *value;
     }
     const auto cell = read_number(reader, single);
     if (!cell || !std::isfinite(*cell) || !(*cell > 0.0))
     {
-        return fail(ErrorCode::BadHeader, "the grid's cell is not a positive number", 29);
+        return fail(ErrorCode::BadHeader, "the grid's cell is not a positive number");
     }
     info.grid.cell = *cell;
-    std::array<std::int32_t, 3> extent{};
-    for (std::int32_t& index : extent)
-    {
-        const auto value = read_bounded(
-            reader, 0, static_cast<std::uint64_t>(info.grid.max_index()), "bounding box"
-        );
-        VSPLIT_TRY(value);
-        index = static_cast<std::int32_t>(*value);
-    }
-    info.box_min = dequantize(info.grid, {0, 0, 0});
-    info.box_max = dequantize(info.grid, extent);
-    return {};
+    return (*bits & proto::kHasAttributes) != 0;
 }
 
 /// Passes over the attribute table, which version 0 leaves empty: each entry is one length-prefixed
@@ -106,161 +93,176 @@ Result<void> skip_attributes(ByteReader& reader)
     return {};
 }
 
-/// State that one row of the index hands to the next.
-struct RowContext
+Result<void> read_extent(BitDecoder& bits, StreamInfo& info)
 {
-    proto::ChunkKind kind = proto::ChunkKind::Base;
-    std::uint8_t codec = 0;
-    std::uint32_t rms_code = 0;
-    std::uint32_t max_code = 0;
-    std::uint32_t vertices = 0;
-    std::uint32_t faces = 0;
-    std::uint64_t offset = 0;
-    bool ends_level = true;
-};
-
-Result<void> read_error_code(ByteReader& reader, std::uint32_t& code)
-{
-    const auto zigzag = read_bounded(reader, 0, 2 * kZeroErrorCode, "error");
-    VSPLIT_TRY(zigzag);
-    const auto difference =
-        static_cast<std::int32_t>(*zigzag >> 1) ^ -static_cast<std::int32_t>(*zigzag & 1U);
-    const std::int32_t value = static_cast<std::int32_t>(code) + difference;
-    if (value < 0 || value > static_cast<std::int32_t>(kZeroErrorCode))
+    const std::uint32_t full = bits.raw(0, 2);
+    std::array<std::int32_t, 3> extent{};
+    for (std::uint32_t axis = 0; axis < 3; ++axis)
     {
-        return fail(ErrorCode::BadHeader, "an error in the index is out of range");
+        extent[axis] = axis == full ? info.grid.max_index()
+                                    : static_cast<std::int32_t>(bits.raw(0, info.grid.bits));
     }
-    code = static_cast<std::uint32_t>(value);
-    return {};
+    info.box_min = dequantize(info.grid, {0, 0, 0});
+    info.box_max = dequantize(info.grid, extent);
+    return std::isfinite(info.diagonal())
+               ? Result<void>{}
+               : fail(ErrorCode::BadHeader, "the bounding box is not finite");
 }
 
-Result<void> read_counts(
-    ByteReader& reader, RowContext& context, const StreamInfo& info, bool has_boundary
-)
+bool is_optional(proto::ChunkKind kind)
 {
-    if (context.kind == proto::ChunkKind::Base)
+    return static_cast<std::uint8_t>(kind) >= proto::kFirstOptionalChunkKind;
+}
+
+/// Reads the rows of the index one after another into the table of chunks.
+class IndexReader
+{
+public:
+    IndexReader(BitDecoder& bits, StreamInfo& info, const DecodeLimits& limits)
+        : bits_(bits), index_(bits), info_(info), limits_(limits), diagonal_(info.diagonal())
     {
-        const auto vertices = read_bounded(reader, 3, info.vertex_count, "base vertex count");
-        VSPLIT_TRY(vertices);
-        const auto faces = read_bounded(reader, 1, info.face_count, "base face count");
-        VSPLIT_TRY(faces);
-        context.vertices = *vertices;
-        context.faces = *faces;
+    }
+
+    Result<void> run()
+    {
+        const std::uint32_t count = index_.code_number(0);
+        if (count < 1 || count > proto::kMaxChunks)
+        {
+            return fail(ErrorCode::BadHeader, "the header's chunk count is out of range");
+        }
+        info_.file_bytes = info_.header_bytes;
+        // Rows can take less than a bit, so the table grows as rows are really there.
+        while (info_.chunks.size() < count)
+        {
+            VSPLIT_TRY(read_row());
+            if (bits_.exhausted())
+            {
+                return fail(ErrorCode::BadHeader, "the index ends too early");
+            }
+        }
+        return index_.level_complete()
+                   ? Result<void>{}
+                   : fail(ErrorCode::BadHeader, "the last level is never completed");
+    }
+
+private:
+    Result<void> read_row()
+    {
+        IndexRow row;
+        const bool base = info_.chunks.empty();
+        if (!base)
+        {
+            index_.code_kind(row);
+        }
+        VSPLIT_TRY(check_kind(row));
+        const bool optional = is_optional(row.kind);
+        if (optional)
+        {
+            index_.code_optional(row);
+        }
+        else if (base ? !index_.code_base(row) : !index_.code_batch(row))
+        {
+            return fail(ErrorCode::BadHeader, "a row of the index is out of range");
+        }
+        if (base && row.codec != 0)
+        {
+            return unknown_chunk(row);
+        }
+        if (row.bytes > limits_.max_chunk_bytes)
+        {
+            return fail(ErrorCode::LimitExceeded, "a chunk is longer than the limit allows");
+        }
+        if (!optional)
+        {
+            VSPLIT_TRY(take(row));
+        }
+        add_chunk(row);
         return {};
     }
-    const auto splits =
-        read_bounded(reader, 0, info.vertex_count - context.vertices, "split count");
-    VSPLIT_TRY(splits);
-    std::uint32_t boundary = 0;
-    if (has_boundary)
-    {
-        const auto count = read_bounded(reader, 0, *splits, "boundary split count");
-        VSPLIT_TRY(count);
-        boundary = *count;
-    }
-    const std::uint64_t faces = std::uint64_t{context.faces} + 2ULL * *splits - boundary;
-    if (faces > info.face_count)
-    {
-        return fail(ErrorCode::BadHeader, "the index adds up to more faces than the header says");
-    }
-    context.vertices += *splits;
-    context.faces = static_cast<std::uint32_t>(faces);
-    return {};
-}
 
-Result<void> check_kind(const RowContext& context, std::size_t row)
-{
-    const auto kind = static_cast<std::uint8_t>(context.kind);
-    const bool known =
-        context.kind == proto::ChunkKind::Base || context.kind == proto::ChunkKind::Batch;
-    if (kind < proto::kFirstOptionalChunkKind && (!known || context.codec != 0))
+    static tl::unexpected<Error> unknown_chunk(const IndexRow& row)
     {
         return fail(
             ErrorCode::UnknownRequiredChunk,
-            "the stream needs chunk kind " + std::to_string(kind) + " codec " +
-                std::to_string(context.codec) + ", which this version does not know"
+            "the stream needs chunk kind " + std::to_string(static_cast<int>(row.kind)) +
+                " codec " + std::to_string(row.codec) + ", which this version does not know"
         );
     }
-    if ((context.kind == proto::ChunkKind::Base) != (row == 0))
-    {
-        return fail(ErrorCode::BadHeader, "the base mesh must be the first chunk and only there");
-    }
-    return {};
-}
 
-Result<ChunkInfo> read_row(
-    ByteReader& reader, RowContext& context, const StreamInfo& info, const DecodeLimits& limits
-)
-{
-    ChunkInfo chunk{.kind = context.kind, .codec = context.codec};
-    const auto length = reader.read_varint();
-    VSPLIT_TRY(length);
-    if (*length / 4 > limits.max_chunk_bytes)
+    /// Checks the kind of any row but the base's.
+    static Result<void> check_kind(const IndexRow& row)
     {
-        return fail(ErrorCode::LimitExceeded, "a chunk is longer than the limit allows");
-    }
-    chunk.bytes = static_cast<std::uint32_t>(*length / 4);
-    const bool has_boundary = (*length & proto::kRowHasBoundary) != 0;
-    if (static_cast<std::uint8_t>(context.kind) < proto::kFirstOptionalChunkKind)
-    {
-        context.ends_level = (*length & proto::kRowContinuesLevel) == 0;
-        VSPLIT_TRY(read_counts(reader, context, info, has_boundary));
-        if (context.ends_level)
+        if (is_optional(row.kind) || (row.kind == proto::ChunkKind::Batch && row.codec == 0))
         {
-            VSPLIT_TRY(read_error_code(reader, context.rms_code));
-            VSPLIT_TRY(read_error_code(reader, context.max_code));
+            return {};
         }
+        if (row.kind == proto::ChunkKind::Base)
+        {
+            return fail(
+                ErrorCode::BadHeader, "the base mesh must be the first chunk and only there"
+            );
+        }
+        return unknown_chunk(row);
     }
-    // An optional chunk leaves a level as open or complete as it was.
-    chunk.ends_level = context.ends_level;
-    chunk.offset = context.offset;
-    context.offset += chunk.bytes;
-    chunk.vertices = context.vertices;
-    chunk.faces = context.faces;
-    chunk.rms_error = error_from_code(context.rms_code) * info.diagonal();
-    chunk.max_error = error_from_code(context.max_code) * info.diagonal();
-    return chunk;
-}
 
-Result<void> read_index(ByteReader& reader, StreamInfo& info, const DecodeLimits& limits)
-{
-    // A row takes at least one byte, which bounds the table by the bytes that are there.
-    const auto count = read_bounded(
-        reader, 1, std::min<std::uint64_t>(proto::kMaxChunks, reader.remaining()), "chunk count"
-    );
-    VSPLIT_TRY(count);
-    info.chunks.reserve(*count);
-    RowContext context{.offset = info.header_bytes};
-    while (info.chunks.size() < *count)
+    /// Adds up vertices and faces.
+    Result<void> take(const IndexRow& row)
     {
-        const auto run = read_bounded(reader, 1, *count - info.chunks.size(), "run of chunks");
-        VSPLIT_TRY(run);
-        const auto kind = reader.read<std::uint8_t>();
-        VSPLIT_TRY(kind);
-        const auto codec = reader.read<std::uint8_t>();
-        VSPLIT_TRY(codec);
-        context.kind = static_cast<proto::ChunkKind>(*kind);
-        context.codec = *codec;
-        for (std::uint32_t i = 0; i < *run; ++i)
+        const bool base = info_.chunks.empty();
+        if (base && row.shift >= info_.grid.bits)
         {
-            VSPLIT_TRY(check_kind(context, info.chunks.size()));
-            auto chunk = read_row(reader, context, info, limits);
-            VSPLIT_TRY(chunk);
-            info.chunks.push_back(*chunk);
+            return fail(ErrorCode::BadHeader, "the base mesh has no precision");
         }
+        const std::uint64_t faces =
+            base ? row.faces : last_.faces + 2ULL * row.vertices - row.boundary;
+        last_.vertices += row.vertices;
+        if (faces > proto::kMaxFaces)
+        {
+            return fail(ErrorCode::BadHeader, "the index adds up to too many faces");
+        }
+        if (last_.vertices > limits_.max_vertices || faces > limits_.max_faces)
+        {
+            return fail(ErrorCode::LimitExceeded, "the mesh is larger than the limit allows");
+        }
+        last_.faces = static_cast<std::uint32_t>(faces);
+        last_.ends_level = index_.level_complete();
+        if (base || row.level_chunks != 0)
+        {
+            last_.shift = row.shift;
+        }
+        if (last_.ends_level)
+        {
+            last_.rms_error = error_from_code(row.rms_code) * diagonal_;
+            last_.max_error = error_from_code(row.max_code) * diagonal_;
+        }
+        return {};
     }
-    info.file_bytes = context.offset;
-    if (context.vertices != info.vertex_count || context.faces != info.face_count)
+
+    void add_chunk(const IndexRow& row)
     {
-        return fail(ErrorCode::BadHeader, "the index does not add up to the header's counts");
+        // An optional chunk leaves a level as open or complete as it was.
+        ChunkInfo chunk = last_;
+        chunk.kind = row.kind;
+        chunk.codec = row.codec;
+        chunk.bytes = row.bytes;
+        chunk.offset = info_.file_bytes;
+        info_.file_bytes += chunk.bytes;
+        info_.vertex_count = chunk.vertices;
+        info_.face_count = chunk.faces;
+        info_.chunks.push_back(chunk);
     }
-    return {};
-}
+
+    BitDecoder& bits_;
+    IndexCoder<BitDecoder> index_;
+    StreamInfo& info_;
+    const DecodeLimits& limits_;
+    double diagonal_;
+    ChunkInfo last_;  ///< The last required chunk.
+};
 
 Result<void> collect_levels(StreamInfo& info)
 {
     LevelInfo level;
-    bool open = false;
     for (const ChunkInfo& chunk : info.chunks)
     {
         level.chunk_bytes += chunk.bytes;
@@ -268,7 +270,6 @@ Result<void> collect_levels(StreamInfo& info)
         {
             continue;
         }
-        open = !chunk.ends_level;
         if (chunk.ends_level)
         {
             level.vertices = chunk.vertices;
@@ -279,10 +280,6 @@ Result<void> collect_levels(StreamInfo& info)
             info.levels.push_back(level);
             level = LevelInfo{.level = level.level + 1};
         }
-    }
-    if (open || info.levels.empty())
-    {
-        return fail(ErrorCode::BadHeader, "the last level is never completed");
     }
     if (info.levels.size() > proto::kMaxLevels)
     {
@@ -300,36 +297,38 @@ Result<std::uint32_t> parse_header_bytes(
     std::span<const std::byte> prefix, const DecodeLimits& limits
 )
 {
-    ByteReader reader(prefix);
+    ByteReader reader(prefix.first(std::min(prefix.size(), proto::kHeaderProbeBytes)));
     const auto magic = reader.read<std::uint32_t>();
     VSPLIT_TRY(magic);
     if (*magic != proto::kStreamMagic)
     {
         return fail(ErrorCode::BadMagic, "this is not a vsplit stream");
     }
-    const auto major = reader.read<std::uint8_t>();
-    const auto minor = reader.read<std::uint8_t>();
-    const auto flags = reader.read<std::uint16_t>();
-    const auto header_bytes = reader.read<std::uint32_t>();
-    VSPLIT_TRY(header_bytes);
-    if (*major > proto::kStreamMajor || (*major == 0 && *minor != proto::kStreamMinor))
+    const auto version = reader.read<std::uint8_t>();
+    VSPLIT_TRY(version);
+    const int major = *version >> 4;
+    const int minor = *version & 15;
+    if (major > proto::kStreamMajor || (major == 0 && minor != proto::kStreamMinor))
     {
         return fail(
             ErrorCode::UnsupportedVersion,
-            "the stream has version " + std::to_string(*major) + "." + std::to_string(*minor) +
+            "the stream has version " + std::to_string(major) + "." + std::to_string(minor) +
                 ", this program reads " + std::to_string(proto::kStreamMajor) + "." +
                 std::to_string(proto::kStreamMinor)
         );
     }
-    if (*flags != 0 || *header_bytes < proto::kFixedHeaderBytes)
+    const auto header_bytes = reader.read_varint();
+    const bool endless = !header_bytes && reader.position() == proto::kHeaderProbeBytes;
+    if (endless || (header_bytes && *header_bytes > limits.max_header_bytes))
     {
-        return fail(ErrorCode::BadHeader, "the fixed header is malformed", 6);
+        return fail(ErrorCode::LimitExceeded, "the header is longer than the limit allows", 5);
     }
-    if (*header_bytes > limits.max_header_bytes)
+    VSPLIT_TRY(header_bytes);
+    if (*header_bytes < proto::kHeaderProbeBytes)
     {
-        return fail(ErrorCode::LimitExceeded, "the header is longer than the limit allows", 8);
+        return fail(ErrorCode::BadHeader, "the header is too short", 5);
     }
-    return *header_bytes;
+    return static_cast<std::uint32_t>(*header_bytes);
 }
 
 Result<StreamInfo> parse_stream_info(std::span<const std::byte> prefix, const DecodeLimits& limits)
@@ -341,35 +340,36 @@ Result<StreamInfo> parse_stream_info(std::span<const std::byte> prefix, const De
         return fail(ErrorCode::Truncated, "the header is not complete", prefix.size());
     }
     const auto header = prefix.first(*header_bytes);
-    ByteReader checksum(header.subspan(kChecksumOffset));
-    if (*checksum.read<std::uint32_t>() != header_checksum(header))
+    if (crc32c(header) != kCrc32cResidue)
     {
-        return fail(ErrorCode::BadChecksum, "the header is damaged", kChecksumOffset);
+        return fail(ErrorCode::BadChecksum, "the header is damaged");
     }
     StreamInfo info;
-    info.major = static_cast<std::uint8_t>(prefix[4]);
-    info.minor = static_cast<std::uint8_t>(prefix[5]);
+    info.major = static_cast<std::uint8_t>(prefix[4] >> 4);
+    info.minor = static_cast<std::uint8_t>(prefix[4] & std::byte{15});
     info.header_bytes = *header_bytes;
-    ByteReader reader(header.subspan(proto::kFixedHeaderBytes), proto::kFixedHeaderBytes);
-    VSPLIT_TRY(read_grid(reader, info));
-    const auto vertices = read_bounded(reader, 3, proto::kMaxVertices, "vertex count");
-    VSPLIT_TRY(vertices);
-    const auto faces = read_bounded(reader, 1, proto::kMaxFaces, "face count");
-    VSPLIT_TRY(faces);
-    info.vertex_count = *vertices;
-    info.face_count = *faces;
-    if (*vertices > limits.max_vertices || *faces > limits.max_faces)
-    {
-        return fail(ErrorCode::LimitExceeded, "the mesh is larger than the limit allows");
-    }
+    ByteReader reader(header.first(header.size() - proto::kChunkChecksumBytes));
+    VSPLIT_TRY(reader.read_bytes(kLengthOffset));
+    VSPLIT_TRY(reader.read_varint());
+    const auto has_attributes = read_grid(reader, info);
+    VSPLIT_TRY(has_attributes);
     const auto content_checksum = reader.read<std::uint32_t>();
     VSPLIT_TRY(content_checksum);
     info.content_checksum = *content_checksum;
-    VSPLIT_TRY(skip_attributes(reader));
-    VSPLIT_TRY(read_index(reader, info, limits));
-    if (reader.remaining() != 0)
+    if (*has_attributes)
     {
-        return fail(ErrorCode::BadHeader, "bytes follow the index", reader.position());
+        VSPLIT_TRY(skip_attributes(reader));
+    }
+    BitDecoder bits;
+    if (!bits.start(*reader.read_bytes(reader.remaining())))
+    {
+        return fail(ErrorCode::BadHeader, "the header has no index", reader.position());
+    }
+    VSPLIT_TRY(read_extent(bits, info));
+    VSPLIT_TRY(IndexReader(bits, info, limits).run());
+    if (!bits.finish())
+    {
+        return fail(ErrorCode::BadHeader, "the index does not end where the header does");
     }
     VSPLIT_TRY(collect_levels(info));
     if (decoder_heap_bytes(prefix_info(info, limits.max_level)) > limits.max_heap_bytes)

@@ -1,6 +1,8 @@
 #include "codec/stream_header_writer.h"
 
+#include "codec/entropy_coder.h"
 #include "codec/error_scale.h"
+#include "codec/index_coder.h"
 #include "core/byte_writer.h"
 #include "core/crc32c.h"
 
@@ -9,11 +11,6 @@
 
 namespace vsplit::codec {
 namespace {
-
-std::uint64_t zigzag(std::int64_t value)
-{
-    return static_cast<std::uint64_t>(value) << 1 ^ static_cast<std::uint64_t>(value >> 63);
-}
 
 /// Length of the diagonal as the reader of the header will compute it.
 double stored_diagonal(const StreamInfo& info, const std::array<std::int32_t, 3>& extent)
@@ -24,57 +21,88 @@ double stored_diagonal(const StreamInfo& info, const std::array<std::int32_t, 3>
     return stored.diagonal();
 }
 
-/// Writes rows of the index; keeps what each row is coded against.
+bool is_optional(proto::ChunkKind kind)
+{
+    return static_cast<std::uint8_t>(kind) >= proto::kFirstOptionalChunkKind;
+}
+
+/// Writes rows of the index; keeps what the next row needs.
 class RowWriter
 {
 public:
-    RowWriter(ByteWriter& out, double diagonal) : out_(out), diagonal_(diagonal) {}
-
-    void write(const ChunkInfo& chunk)
+    RowWriter(BitEncoder& bits, const StreamInfo& info, double diagonal)
+        : index_(bits), info_(info), diagonal_(diagonal)
     {
-        const bool base = chunk.kind == proto::ChunkKind::Base;
-        const std::uint32_t splits = chunk.vertices - vertices_;
-        const std::uint32_t boundary = 2 * splits - (chunk.faces - faces_);
-        out_.write_varint(
-            std::uint64_t{chunk.bytes} * 4 + (chunk.ends_level ? 0 : proto::kRowContinuesLevel) +
-            (!base && boundary != 0 ? proto::kRowHasBoundary : 0)
-        );
-        if (static_cast<std::uint8_t>(chunk.kind) >= proto::kFirstOptionalChunkKind)
+    }
+
+    /// Writes the row of chunk `i`. What is out of range is written as far as it can be: the reader
+    /// refuses it.
+    void write(std::size_t i)
+    {
+        const ChunkInfo& chunk = info_.chunks[i];
+        IndexRow row{.kind = chunk.kind, .codec = chunk.codec, .bytes = chunk.bytes};
+        row.shift = chunk.shift;
+        row.rms_code = code_of(chunk.rms_error);
+        row.max_code = code_of(chunk.max_error);
+        if (i == 0)
         {
-            return;
+            row.vertices = chunk.vertices;
+            row.faces = chunk.faces;
+            static_cast<void>(index_.code_base(row));
         }
-        out_.write_varint(splits);
-        if (base)
+        else
         {
-            out_.write_varint(chunk.faces);
-        }
-        else if (boundary != 0)
-        {
-            out_.write_varint(boundary);
+            index_.code_kind(row);
+            if (is_optional(chunk.kind))
+            {
+                index_.code_optional(row);
+                return;
+            }
+            row.vertices = chunk.vertices - vertices_;
+            row.boundary = 2 * row.vertices - (chunk.faces - faces_);
+            count_level(i, row);
+            static_cast<void>(index_.code_batch(row));
         }
         vertices_ = chunk.vertices;
         faces_ = chunk.faces;
-        if (chunk.ends_level)
-        {
-            write_error(chunk.rms_error, rms_code_);
-            write_error(chunk.max_error, max_code_);
-        }
+    }
+
+    /// Writes the number of rows.
+    void write_count()
+    {
+        static_cast<void>(index_.code_number(static_cast<std::uint32_t>(info_.chunks.size())));
     }
 
 private:
-    void write_error(double error, std::uint32_t& previous)
+    std::uint32_t code_of(double error) const
     {
-        const std::uint32_t code = error_to_code(diagonal_ > 0.0 ? error / diagonal_ : 0.0);
-        out_.write_varint(zigzag(std::int64_t{code} - std::int64_t{previous}));
-        previous = code;
+        return error_to_code(diagonal_ > 0.0 ? error / diagonal_ : 0.0);
     }
 
-    ByteWriter& out_;
+    /// Finds chunks and splits of the level that begins with chunk `i`.
+    void count_level(std::size_t i, IndexRow& row) const
+    {
+        std::uint32_t vertices = vertices_;
+        bool open = true;
+        for (; open && i < info_.chunks.size(); ++i)
+        {
+            const ChunkInfo& chunk = info_.chunks[i];
+            if (!is_optional(chunk.kind))
+            {
+                ++row.level_chunks;
+                vertices = chunk.vertices;
+                open = !chunk.ends_level;
+            }
+        }
+        row.level_chunks += open ? 1 : 0;
+        row.level_vertices = vertices - vertices_;
+    }
+
+    IndexCoder<BitEncoder> index_;
+    const StreamInfo& info_;
     double diagonal_;
     std::uint32_t vertices_ = 0;
     std::uint32_t faces_ = 0;
-    std::uint32_t rms_code_ = 0;
-    std::uint32_t max_code_ = 0;
 };
 
 bool fits_single_precision(const QuantizationGrid& grid)
@@ -85,25 +113,34 @@ bool fits_single_precision(const QuantizationGrid& grid)
     return std::ranges::all_of(grid.origin, fits) && fits(grid.cell);
 }
 
-void write_index(ByteWriter& out, const StreamInfo& info, double diagonal)
+/// Codes the greatest indices; one axis, most often, spans the whole grid.
+void code_extent(BitEncoder& bits, const QuantizationGrid& grid, std::array<std::int32_t, 3> extent)
 {
-    out.write_varint(info.chunks.size());
-    RowWriter rows(out, diagonal);
-    for (std::size_t begin = 0; begin < info.chunks.size();)
+    const auto full = std::ranges::find(extent, (std::int64_t{1} << grid.bits) - 1);
+    const auto axis = full - extent.begin();
+    bits.raw(static_cast<std::uint32_t>(axis), 2);
+    for (std::ptrdiff_t i = 0; i < 3; ++i)
     {
-        const ChunkInfo& first = info.chunks[begin];
-        std::size_t end = begin + 1;
-        while (end < info.chunks.size() && info.chunks[end].kind == first.kind &&
-               info.chunks[end].codec == first.codec)
+        if (i != axis)
         {
-            ++end;
+            bits.raw(static_cast<std::uint32_t>(extent[static_cast<std::size_t>(i)]), grid.bits);
         }
-        out.write_varint(end - begin);
-        out.write(static_cast<std::uint8_t>(first.kind));
-        out.write(first.codec);
-        for (; begin < end; ++begin)
+    }
+}
+
+void write_grid(ByteWriter& out, const QuantizationGrid& grid)
+{
+    const bool single = fits_single_precision(grid);
+    out.write(static_cast<std::uint8_t>(grid.bits | (single ? proto::kSinglePrecisionGrid : 0)));
+    for (const double number : {grid.origin[0], grid.origin[1], grid.origin[2], grid.cell})
+    {
+        if (single)
         {
-            rows.write(info.chunks[begin]);
+            out.write(std::bit_cast<std::uint32_t>(static_cast<float>(number)));
+        }
+        else
+        {
+            out.write_f64(number);
         }
     }
 }
@@ -115,40 +152,31 @@ std::vector<std::byte> write_stream_header(
 )
 {
     ByteWriter body;
-    const bool single = fits_single_precision(info.grid);
-    body.write(
-        static_cast<std::uint8_t>(info.grid.bits + (single ? proto::kSinglePrecisionGrid : 0))
-    );
-    for (const double number :
-         {info.grid.origin[0], info.grid.origin[1], info.grid.origin[2], info.grid.cell})
-    {
-        if (single)
-        {
-            body.write(std::bit_cast<std::uint32_t>(static_cast<float>(number)));
-        }
-        else
-        {
-            body.write_f64(number);
-        }
-    }
-    for (const std::int32_t index : extent)
-    {
-        body.write_varint(static_cast<std::uint64_t>(index));
-    }
-    body.write_varint(info.vertex_count);
-    body.write_varint(info.face_count);
+    write_grid(body, info.grid);
     body.write(info.content_checksum);
-    body.write_varint(0);  // No attributes in version 0.
-    write_index(body, info, stored_diagonal(info, extent));
+    BitEncoder bits;
+    code_extent(bits, info.grid, extent);
+    RowWriter rows(bits, info, stored_diagonal(info, extent));
+    rows.write_count();
+    for (std::size_t i = 0; i < info.chunks.size(); ++i)
+    {
+        rows.write(i);
+    }
+    bits.finish(body);
 
     ByteWriter header;
     header.write(proto::kStreamMagic);
-    header.write(proto::kStreamMajor);
-    header.write(proto::kStreamMinor);
-    header.write(std::uint16_t{0});
-    header.write(static_cast<std::uint32_t>(proto::kFixedHeaderBytes + body.size()));
-    header.write(crc32c(body.view(), crc32c(header.view())));
+    header.write(static_cast<std::uint8_t>(proto::kStreamMajor << 4 | proto::kStreamMinor));
+    // The length counts its own bytes.
+    const std::size_t rest = header.size() + body.size() + proto::kChunkChecksumBytes;
+    std::size_t length_bytes = 1;
+    while ((rest + length_bytes) >> (7 * length_bytes) != 0)
+    {
+        ++length_bytes;
+    }
+    header.write_varint(rest + length_bytes);
     header.write_bytes(body.view());
+    header.write(crc32c(header.view()));
     return header.take();
 }
 

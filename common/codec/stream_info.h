@@ -35,6 +35,7 @@ struct ChunkInfo
     std::uint32_t bytes = 0;     ///< Length, the checksum at its end included.
     std::uint32_t vertices = 0;  ///< Vertices of the mesh after it.
     std::uint32_t faces = 0;     ///< Triangles of the mesh after it.
+    int shift = 0;               ///< Bits of precision that positions lack after it.
     double rms_error = 0.0;      ///< RMS surface distance to the source after it, model units.
     double max_error = 0.0;      ///< Largest sampled surface distance after it, model units.
 };
@@ -88,7 +89,7 @@ struct StopCondition
 /// Returns how many bytes of a stream must be there before its header length is known.
 [[nodiscard]] constexpr std::size_t header_probe_bytes()
 {
-    return proto::kFixedHeaderBytes;
+    return proto::kHeaderProbeBytes;
 }
 
 /// Reads the length of header and index from the first header_probe_bytes() bytes.

@@ -204,22 +204,58 @@ TEST(BitDecoder, ReportsModelledBitsBeyondTheEnd)
 TEST(BitDecoder, ReportsPaddingThatIsNotZero)
 {
     auto bytes = encode({{.raw_bits = 3, .value = 5}});
-    bytes[1] |= std::byte{0x40};
+    bytes[0] |= std::byte{0x40};
     BitDecoder bits;
     ASSERT_TRUE(bits.start(bytes).has_value());
     EXPECT_EQ(bits.raw(0, 3), 5U);
     EXPECT_FALSE(bits.finish().has_value());
 }
 
-TEST(BitDecoder, RejectsARawPartLongerThanTheChunk)
+TEST(BitDecoder, ReportsBitsThatWereReadTwice)
 {
-    ByteWriter out;
-    out.write_varint(1000);
-    out.write(std::uint32_t{0});
+    // Raw bits are read from the front, modelled ones from the end: neither may reach into the other.
+    const auto operations = random_operations(100, 0.0, 5);
+    auto bytes = encode(operations);
     BitDecoder bits;
-    const auto started = bits.start(out.view());
-    ASSERT_FALSE(started.has_value());
-    EXPECT_EQ(started.error().code, ErrorCode::BadChunk);
+    ASSERT_TRUE(bits.start(bytes).has_value());
+    EXPECT_EQ(count_equal(bits, operations), operations.size());
+    EXPECT_FALSE(bits.exhausted());
+    static_cast<void>(bits.raw(0, 8));
+    EXPECT_TRUE(bits.exhausted());
+    EXPECT_FALSE(bits.finish().has_value());
+
+    bytes.insert(bytes.begin(), std::byte{0});
+    ASSERT_TRUE(bits.start(bytes).has_value());
+    EXPECT_EQ(count_equal(bits, operations), operations.size());
+    EXPECT_FALSE(bits.finish().has_value());
+    EXPECT_EQ(bits.raw(0, 8), 0U);
+    EXPECT_TRUE(bits.finish().has_value());
+}
+
+TEST(BitDecoder, KnowsWhenItsBitsAreExhausted)
+{
+    const auto operations = random_operations(50, 0.0, 2);
+    const auto bytes = encode(operations);
+    BitDecoder bits;
+    ASSERT_TRUE(bits.start(bytes).has_value());
+    for (const Operation& operation : operations)
+    {
+        EXPECT_FALSE(bits.exhausted());
+        static_cast<void>(bits.bit(operation.probability));
+    }
+    for (int i = 0; i < 50; ++i)
+    {
+        static_cast<void>(bits.bit(20000));
+    }
+    EXPECT_TRUE(bits.exhausted());
+}
+
+TEST(BitDecoder, RejectsWhatCannotStart)
+{
+    BitDecoder bits;
+    EXPECT_EQ(bits.start({}).error().code, ErrorCode::BadChunk);
+    const std::vector<std::byte> wrong{std::byte{0}, std::byte{0xC0}};
+    EXPECT_EQ(bits.start(wrong).error().code, ErrorCode::BadChunk);
 }
 
 TEST(BitDecoder, RejectsEveryTruncationOrReadsToItsEnd)

@@ -13,24 +13,11 @@
 namespace vsplit::test {
 namespace {
 
-constexpr std::size_t kLengthOffset = 8;
-constexpr std::size_t kChecksumOffset = 12;
-
 void write_checksum(std::span<std::byte> place, std::uint32_t checksum)
 {
     ByteWriter bytes;
     bytes.write(checksum);
     std::ranges::copy(bytes.view(), place.begin());
-}
-
-std::uint32_t read_length(std::span<const std::byte> file)
-{
-    std::uint32_t length = 0;
-    for (std::size_t i = 0; i < 4; ++i)
-    {
-        length |= static_cast<std::uint32_t>(file[kLengthOffset + i]) << (8 * i);
-    }
-    return length;
 }
 
 }  // namespace
@@ -78,16 +65,13 @@ Bytes put_together(const StreamParts& parts)
 
 void repair_checksums(Bytes& file)
 {
-    if (file.size() < proto::kFixedHeaderBytes || read_length(file) < proto::kFixedHeaderBytes ||
-        read_length(file) > file.size())
+    const std::size_t header_bytes = codec::parse_header_bytes(file).value_or(0);
+    if (header_bytes < proto::kHeaderProbeBytes || header_bytes > file.size())
     {
         return;
     }
-    const auto header = std::span(file).first(read_length(file));
-    write_checksum(
-        header.subspan(kChecksumOffset, 4),
-        crc32c(header.subspan(proto::kFixedHeaderBytes), crc32c(header.first(kChecksumOffset)))
-    );
+    const std::size_t place = header_bytes - proto::kChunkChecksumBytes;
+    write_checksum(std::span(file).subspan(place), crc32c(std::span(file).first(place)));
     const auto info = codec::parse_stream_info(file);
     for (std::size_t i = 0; info && i < info->chunks.size(); ++i)
     {

@@ -38,16 +38,16 @@ test::StreamParts base_stream(const IndexedMesh& mesh)
     row.kind = proto::ChunkKind::Base;
     row.vertices = static_cast<std::uint32_t>(base.positions.size());
     row.faces = static_cast<std::uint32_t>(base.triangles.size());
+    row.shift = kBaseShift;
     parts.info.chunks.push_back(row);
-    test::Bytes chunk = codec::encode_base_mesh(base).value().bytes;
-    chunk.insert(chunk.begin(), static_cast<std::byte>(kBaseShift));
-    parts.chunks.push_back(std::move(chunk));
+    parts.chunks.push_back(codec::encode_base_mesh(base).value().bytes);
     return parts;
 }
 
 struct Row
 {
-    unsigned flags = 0;  ///< 1: the level goes on; 2: optional kind; 4: stitches.
+    unsigned flags =
+        0;  ///< 1: the level goes on; 2: optional kind; 4: stitches; from 8 on: shift drop.
     unsigned splits = 0;
     unsigned boundary = 0;
     unsigned length = 0;
@@ -73,6 +73,8 @@ void add_chunk(test::StreamParts& parts, const Row& row, std::span<const std::by
     chunk.ends_level = (row.flags & 1U) == 0;
     if (chunk.kind == proto::ChunkKind::Batch)
     {
+        const auto drop = static_cast<int>(row.flags >> 3);
+        chunk.shift -= parts.info.chunks.back().ends_level ? std::min(drop, chunk.shift) : 0;
         chunk.vertices += row.splits;
         chunk.faces += 2 * row.splits - std::min(row.boundary, row.splits);
     }

@@ -77,32 +77,16 @@ class IntegerModel:
 class BitStreams:
     """Raw and modelled bits of one chunk."""
 
-    def __init__(self, contents, trace):
-        self.trace, length, position = trace, 0, 0
-        while True:
-            if position >= len(contents) or position == 10:
-                raise Refusal("truncated" if position < 10 else "bad-header", "raw bytes")
-            length |= (contents[position] & 127) << 7 * position
-            position += 1
-            if contents[position - 1] < 128:
-                break
-        if length > len(contents) - position:
-            raise Refusal("bad-chunk", "raw bytes")
-        self.raw_bytes, self.raw_taken = contents[position:position + length], 0
-        self.start(contents[position + length:])
-
-    def start(self, modelled):
-        if not modelled:
-            raise Refusal("bad-chunk", "modelled bits")
-        more = modelled[-1] >> 6
-        if more == 3 or more + 1 > len(modelled):
-            raise Refusal("bad-chunk", "modelled bits")
-        self.modelled_bytes = len(modelled)
-        self.modelled, self.position = modelled, len(modelled) - 1 - more
-        number = int.from_bytes(modelled[self.position:], "little")
+    def __init__(self, contents, trace, error="bad-chunk"):
+        self.trace, self.error, self.bytes, self.raw_taken = trace, error, contents, 0
+        more = contents[-1] >> 6 if contents else 3
+        if more == 3 or more + 1 > len(contents):
+            raise Refusal(error, "modelled bits")
+        self.position = len(contents) - 1 - more
+        number = int.from_bytes(contents[self.position:], "little")
         self.state = (number & (2 ** (6 + 8 * more) - 1)) + 4096
         if self.state >= 2**20:
-            raise Refusal("bad-chunk", "state")
+            raise Refusal(error, "state")
 
     def show(self, text):
         if self.trace:
@@ -112,16 +96,17 @@ class BitStreams:
         value = 0
         for i in range(count):
             byte, bit = divmod(self.raw_taken, 8)
-            if byte < len(self.raw_bytes):
-                value |= (self.raw_bytes[byte] >> bit & 1) << i
+            if byte < len(self.bytes):
+                value |= (self.bytes[byte] >> bit & 1) << i
             self.raw_taken += 1
-        self.show(f"raw {count:2}              {name}: {value}")
+        if count:
+            self.show(f"raw {count:2}              {name}: {value}")
         return value
 
     def refill(self):
         if self.state < 4096 and self.position > 0:
             self.position -= 1
-            self.state = self.state * 256 + self.modelled[self.position]
+            self.state = self.state * 256 + self.bytes[self.position]
 
     def bit(self, q, name):
         z = clamp(256 - ((q + 128) >> 8), 1, 255)
@@ -133,12 +118,16 @@ class BitStreams:
         self.show(f"state {before:7} p {p:3}  {name}: {int(one)}")
         return one
 
+    def exhausted(self):
+        begun = (self.raw_taken + 7) // 8
+        return begun > self.position or (begun == self.position and self.state < 4096)
+
     def finish(self):
         self.refill()
-        used = (self.raw_taken + 7) // 8
-        rest = self.raw_bytes[-1] >> self.raw_taken % 8 if self.raw_taken % 8 else 0
-        if used != len(self.raw_bytes) or rest or self.position or self.state != 4096:
-            raise Refusal("bad-chunk", "end of the bit streams")
+        begun = (self.raw_taken + 7) // 8
+        rest = self.bytes[begun - 1] >> self.raw_taken % 8 if self.raw_taken % 8 else 0
+        if begun != self.position or rest or self.state != 4096:
+            raise Refusal(self.error, "end of the bit streams")
 
     def adaptive(self, m, name):
         x = self.bit((m[0] * 1023 >> 10) + 32, name)

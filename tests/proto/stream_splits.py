@@ -94,10 +94,8 @@ class Splits:
     def chosen(self, **indices):
         return [(self.t[name], index) for name, index in indices.items()]
 
-    def start_level(self, bits):
-        mesh, shift = self.mesh, bits.raw(5, "shift")
-        if shift > mesh.shift:
-            raise Refusal("bad-chunk", "shift")
+    def start_level(self, bits, shift):
+        mesh = self.mesh
         steps, mesh.shift = mesh.shift - shift, shift
         for v in range(len(mesh.positions) if steps > 0 else 0):
             mesh.positions[v] = tuple(

@@ -1,0 +1,363 @@
+#pragma once
+
+// The rows of the index, coded against what the rows before them promise. Reader and writer of the
+// header run this same code; only the bit coder differs.
+
+#include "codec/context_model.h"
+#include "codec/error_scale.h"
+#include "codec/float_log.h"
+#include "format.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+
+namespace vsplit::codec {
+
+/// What one row of the index says.
+struct IndexRow
+{
+    proto::ChunkKind kind = proto::ChunkKind::Batch;
+    std::uint8_t codec = 0;
+    std::uint32_t bytes = 0;     ///< Length of the chunk, checksum included.
+    std::uint32_t vertices = 0;  ///< Base: of the mesh; Batch: that the chunk adds.
+    std::uint32_t boundary = 0;  ///< Batch: how many of them split a boundary.
+    std::uint32_t faces = 0;     ///< Base only.
+    int shift = 0;               ///< Base and first chunk of a level: the level's shift.
+    std::uint32_t rms_code = 0;  ///< Base and last chunk of a level: its errors.
+    std::uint32_t max_code = 0;
+    std::uint32_t level_chunks = 0;    ///< First chunk of a level: Batch chunks of the level.
+    std::uint32_t level_vertices = 0;  ///< First chunk of a level: what the level adds.
+};
+
+/// Bytes of a chunk that do not depend on its splits: the checksum and the ends of its bit streams.
+inline constexpr std::uint32_t kChunkOverheadBytes = 6;
+
+/// What splits have cost so far, from which rows predict lengths and the encoder cuts levels into
+/// chunks. Source: proto/STREAM_FORMAT.md, "Rows".
+class SplitCost
+{
+public:
+    /// Bits that `splits` (at most 2^28) will cost.
+    [[nodiscard]] std::uint64_t bits_for(std::uint64_t splits) const
+    {
+        return splits * bits_ / splits_;
+    }
+
+    /// Splits of the next of `chunks` (at least 1) chunks of equal length that hold `splits` splits and,
+    /// in the next one, `refinement` bits besides.
+    [[nodiscard]] std::uint32_t next_share(
+        std::uint32_t splits, std::uint32_t chunks, std::uint64_t refinement
+    ) const
+    {
+        const std::uint64_t share = (bits_for(splits) + refinement) / chunks;
+        const std::uint64_t left = share - std::min(share, refinement);
+        return static_cast<std::uint32_t>(std::min<std::uint64_t>(left * splits_ / bits_, splits));
+    }
+
+    /// Length to be expected of a chunk, bytes.
+    [[nodiscard]] std::uint32_t chunk_bytes(std::uint32_t splits, std::uint64_t refinement) const
+    {
+        const std::uint64_t bytes = (bits_for(splits) + refinement + 7) / 8 + kChunkOverheadBytes;
+        return static_cast<std::uint32_t>(std::min<std::uint64_t>(bytes, kMostBytes));
+    }
+
+    /// Takes note of a chunk.
+    void observe(std::uint32_t splits, std::uint32_t bytes, std::uint64_t refinement)
+    {
+        const std::uint64_t fixed = refinement + 8ULL * kChunkOverheadBytes;
+        const std::uint64_t bits = 8ULL * bytes - std::min<std::uint64_t>(8ULL * bytes, fixed);
+        bits_ += std::max<std::uint64_t>(bits, 2ULL * splits);
+        splits_ += splits;
+        for (; splits_ >= kMemory; splits_ /= 2)
+        {
+            bits_ /= 2;
+        }
+    }
+
+private:
+    static constexpr std::uint64_t kMostBytes = 1U << 28;
+    static constexpr std::uint64_t kMemory = 256;
+
+    std::uint64_t bits_ = 320;  ///< Of the chunks before, the last ones counting most.
+    std::uint64_t splits_ = 16;
+};
+
+/// Builds the model of an integer that typically is below 2^`exponent`.
+[[nodiscard]] inline IntegerModel make_index_integer(int exponent)
+{
+    constexpr std::uint16_t kCount = 5;
+    constexpr std::uint16_t kSettled = 24;
+    IntegerModel model;
+    model.nonzero = {static_cast<std::uint16_t>(65536 - (40000 >> exponent)), kCount};
+    for (AdaptiveBit& sign : model.sign)
+    {
+        sign.count = kCount;
+    }
+    for (int e = 0; e < 24; ++e)
+    {
+        const int probability = e < exponent - 1 ? 52000 : e < exponent ? 32768 : 16384;
+        model.prefix[static_cast<std::size_t>(e)] = {
+            static_cast<std::uint16_t>(probability), kCount};
+    }
+    for (auto& mantissa : model.mantissa)
+    {
+        mantissa.fill({32768, kSettled});
+    }
+    return model;
+}
+
+/// What is learned while an index is coded.
+struct IndexModel
+{
+    AdaptiveBit other_kind{2048, 4};
+    AdaptiveBit has_boundary{8192, 2};
+    IntegerModel level_chunks = make_index_integer(1);
+    IntegerModel level_vertices = make_index_integer(2);
+    IntegerModel drop = make_index_integer(0);
+    IntegerModel vertices = make_index_integer(0);
+    IntegerModel boundary = make_index_integer(1);
+    IntegerModel bytes = make_index_integer(2);
+    IntegerModel rms = make_index_integer(1);
+    IntegerModel maximum = make_index_integer(2);
+};
+
+/// Codes row after row. `Coder`: BitEncoder or BitDecoder. Not thread safe. Safe on untrusted input.
+template <typename Coder>
+class IndexCoder
+{
+public:
+    /// Starts before the first row; `coder` must outlive this.
+    explicit IndexCoder(Coder& coder) : coder_(coder) {}
+
+    /// Codes the first row, which is that of the base. Result: false when a value is out of range.
+    [[nodiscard]] bool code_base(IndexRow& row)
+    {
+        row.kind = proto::ChunkKind::Base;
+        row.codec = static_cast<std::uint8_t>(coder_.raw(row.codec, 2));
+        row.vertices = code_number(row.vertices);
+        const bool closed = row.faces + 4ULL == 2ULL * row.vertices;
+        row.faces =
+            coder_.raw(closed ? 1 : 0, 1) != 0 ? 2 * row.vertices - 4 : code_number(row.faces);
+        row.bytes = code_number(row.bytes);
+        row.shift = static_cast<int>(coder_.raw(static_cast<std::uint32_t>(row.shift), 5));
+        row.rms_code = coder_.raw(row.rms_code, kErrorCodeBits);
+        row.max_code = coder_.raw(row.max_code, kErrorCodeBits);
+        vertices_ = row.vertices;
+        level_start_ = row.vertices;
+        level_vertices_ = row.vertices / 2;
+        shift_ = row.shift;
+        rms_code_ = row.rms_code;
+        max_code_ = row.max_code;
+        return row.vertices >= 3 && row.vertices <= proto::kMaxVertices && row.faces >= 1 &&
+               row.faces <= proto::kMaxFaces && row.rms_code <= kZeroErrorCode &&
+               row.max_code <= kZeroErrorCode;
+    }
+
+    /// Codes kind and codec of the next row.
+    void code_kind(IndexRow& row)
+    {
+        const bool other = row.kind != kind_ || row.codec != codec_;
+        if (code_bit(coder_, model_.other_kind, other))
+        {
+            kind_ =
+                static_cast<proto::ChunkKind>(coder_.raw(static_cast<std::uint8_t>(row.kind), 8));
+            codec_ = static_cast<std::uint8_t>(coder_.raw(row.codec, 8));
+        }
+        row.kind = kind_;
+        row.codec = codec_;
+    }
+
+    /// Codes the rest of the row of an optional chunk.
+    void code_optional(IndexRow& row) { row.bytes = code_number(row.bytes); }
+
+    /// Codes the rest of the row of a Batch chunk. Result: false when a value is out of range.
+    [[nodiscard]] bool code_batch(IndexRow& row)
+    {
+        std::uint64_t refinement = 0;
+        const bool starts = chunks_left_ == 0;
+        if (starts && !code_level(row, refinement))
+        {
+            return false;
+        }
+        if (!code_splits(row, refinement))
+        {
+            return false;
+        }
+        const std::uint32_t expected = cost_.chunk_bytes(row.vertices, refinement);
+        if (!code_near(model_.bytes, row.bytes, expected, 4, kMostBytes))
+        {
+            return false;
+        }
+        cost_.observe(row.vertices, row.bytes, refinement);
+        vertices_ += row.vertices;
+        vertices_left_ -= row.vertices;
+        --chunks_left_;
+        return chunks_left_ > 0 || code_errors(row);
+    }
+
+    /// Tells whether the last row ended a level.
+    [[nodiscard]] bool level_complete() const { return chunks_left_ == 0; }
+
+    /// Codes a number below 2^31 of which nothing is known.
+    [[nodiscard]] std::uint32_t code_number(std::uint32_t number)
+    {
+        const auto width =
+            static_cast<int>(coder_.raw(static_cast<std::uint32_t>(std::bit_width(number)), 5));
+        return width < 2 ? static_cast<std::uint32_t>(width)
+                         : coder_.raw(number, width - 1) | 1U << (width - 1);
+    }
+
+private:
+    static constexpr int kErrorCodeBits = 9;
+    static constexpr std::uint32_t kMostBytes = 1U << 28;
+
+    /// Codes a number near to what is expected of it, in steps of 2^-`fineness` of that; the rest raw.
+    [[nodiscard]] bool code_near(
+        IntegerModel& model,
+        std::uint32_t& number,
+        std::uint32_t expected,
+        int fineness,
+        std::uint32_t most
+    )
+    {
+        const int raw = std::max(0, static_cast<int>(std::bit_width(expected)) - fineness);
+        const auto difference =
+            static_cast<std::int32_t>(number >> raw) - static_cast<std::int32_t>(expected >> raw);
+        const std::int64_t steps =
+            std::int64_t{expected >> raw} + code_integer(coder_, model, difference, 0);
+        const std::int64_t value = steps * (std::int64_t{1} << raw) + coder_.raw(number, raw);
+        number = static_cast<std::uint32_t>(std::clamp<std::int64_t>(value, 0, most));
+        return value == number;
+    }
+
+    /// Codes what is said at the start of a level.
+    [[nodiscard]] bool code_level(IndexRow& row, std::uint64_t& refinement)
+    {
+        const auto chunks = static_cast<std::int32_t>(row.level_chunks) - level_chunks_;
+        level_chunks_ += code_integer(coder_, model_.level_chunks, chunks, 0);
+        if (level_chunks_ < 1 || level_chunks_ > static_cast<std::int32_t>(proto::kMaxChunks))
+        {
+            return false;
+        }
+        const std::uint64_t expected =
+            std::uint64_t{level_vertices_} * vertices_ / std::max(1U, level_start_);
+        const std::uint32_t most = proto::kMaxVertices - vertices_;
+        if (!code_near(
+                model_.level_vertices,
+                row.level_vertices,
+                static_cast<std::uint32_t>(std::min<std::uint64_t>(expected, most)),
+                4,
+                most
+            ))
+        {
+            return false;
+        }
+        const std::int32_t drop = code_integer(coder_, model_.drop, shift_ - row.shift, 0);
+        if (drop < 0 || drop > shift_)
+        {
+            return false;
+        }
+        refinement = 3ULL * vertices_ * static_cast<std::uint32_t>(drop);
+        shift_ -= drop;
+        dropped_ = drop > 0;
+        level_start_ = vertices_;
+        level_vertices_ = row.level_vertices;
+        chunks_left_ = static_cast<std::uint32_t>(level_chunks_);
+        vertices_left_ = level_vertices_;
+        row.shift = shift_;
+        row.level_chunks = chunks_left_;
+        return true;
+    }
+
+    [[nodiscard]] bool code_splits(IndexRow& row, std::uint64_t refinement)
+    {
+        if (chunks_left_ == 1)
+        {
+            row.vertices = vertices_left_;
+        }
+        else if (!code_near(
+                     model_.vertices,
+                     row.vertices,
+                     cost_.next_share(vertices_left_, chunks_left_, refinement),
+                     6,
+                     vertices_left_
+                 ))
+        {
+            return false;
+        }
+        if (!code_bit(coder_, model_.has_boundary, row.boundary != 0))
+        {
+            row.boundary = 0;
+            return true;
+        }
+        const std::uint64_t expected = std::uint64_t{row.vertices} * boundary_ / boundary_of_;
+        boundary_of_ = std::max(1U, row.vertices);
+        const bool good = code_near(
+            model_.boundary,
+            row.boundary,
+            static_cast<std::uint32_t>(std::min<std::uint64_t>(expected, row.vertices)),
+            3,
+            row.vertices
+        );
+        boundary_ = row.boundary;
+        return good;
+    }
+
+    /// Codes an error code near to what is expected of it.
+    [[nodiscard]] bool code_error(
+        IntegerModel& model, std::uint32_t& code, std::int32_t expected, std::size_t context
+    )
+    {
+        expected = clamp_int(expected, 0, static_cast<std::int32_t>(kZeroErrorCode));
+        const std::int32_t value =
+            expected +
+            code_integer(coder_, model, static_cast<std::int32_t>(code) - expected, context);
+        code = static_cast<std::uint32_t>(value);
+        return value >= 0 && value <= static_cast<std::int32_t>(kZeroErrorCode);
+    }
+
+    [[nodiscard]] bool code_errors(IndexRow& row)
+    {
+        const auto log = [](std::uint32_t count) {
+            return steps_log2<3>(static_cast<float>(count));
+        };
+        const auto before = static_cast<std::int32_t>(rms_code_);
+        const std::int32_t expected = before + log(vertices_) - log(level_start_);
+        if (!code_error(model_.rms, row.rms_code, expected, dropped_ ? 1 : 0))
+        {
+            return false;
+        }
+        rms_code_ = row.rms_code;
+        const std::int32_t step = static_cast<std::int32_t>(rms_code_) - before;
+        if (!code_error(
+                model_.maximum, row.max_code, static_cast<std::int32_t>(max_code_) + step, 0
+            ))
+        {
+            return false;
+        }
+        max_code_ = row.max_code;
+        return true;
+    }
+
+    Coder& coder_;
+    IndexModel model_;
+    SplitCost cost_;
+    proto::ChunkKind kind_ = proto::ChunkKind::Batch;
+    std::uint8_t codec_ = 0;
+    std::uint32_t vertices_ = 0;        ///< After the last row.
+    std::uint32_t level_start_ = 0;     ///< Vertices when the level started.
+    std::uint32_t level_vertices_ = 0;  ///< Splits of the level.
+    std::uint32_t vertices_left_ = 0;   ///< Of them to come.
+    std::uint32_t chunks_left_ = 0;     ///< Of the level.
+    std::int32_t level_chunks_ = 1;
+    std::uint32_t boundary_ = 1;     ///< Of the last chunk that had any
+    std::uint32_t boundary_of_ = 4;  ///< and its splits.
+    int shift_ = 0;
+    bool dropped_ = false;
+    std::uint32_t rms_code_ = 0;
+    std::uint32_t max_code_ = 0;
+};
+
+}  // namespace vsplit::codec
