@@ -2,6 +2,8 @@
 // for Sparse Recovery", 2010: weights 1 / (scale + |residual|) make squares behave like magnitudes.
 #include "codec/weight_fit.h"
 
+#include "core/portable_log.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -72,14 +74,15 @@ Residual residual_of(const FitSample& sample, const PredictionWeights& weights)
 
 double estimated_bits(std::span<const FitSample> samples, const PredictionWeights& weights)
 {
-    double bits = 0.0;
+    double nats = 0.0;
     for (const FitSample& sample : samples)
     {
         const Residual residual = residual_of(sample, weights);
-        bits += std::log2(1.0 + 2.0 * std::fabs(residual.normal)) +
-                2.0 * std::log2(1.0 + 1.5 * residual.tangential);
+        // The tangential residual has two coordinates.
+        const double tangential = 1.0 + 1.5 * residual.tangential;
+        nats += portable_log((1.0 + 2.0 * std::fabs(residual.normal)) * (tangential * tangential));
     }
-    return bits;
+    return nats / kLn2;
 }
 
 std::int8_t to_weight(double value)

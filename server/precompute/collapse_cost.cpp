@@ -5,6 +5,7 @@
 // curvature as a factor is neutral to good, while curvature alone as the order is far worse.
 #include "precompute/collapse_cost.h"
 
+#include "core/portable_log.h"
 #include "precompute/curvature.h"
 
 #include <algorithm>
@@ -25,7 +26,7 @@ constexpr double kFeatureFactor = 1e6;
 /// with a tenth of cow, homer and rocker-arm marked: 16 halves the region's error at a given rate, 100
 /// takes it to a third and adds a tenth to a half to the rest's, 10^4 and more leave the rest with too
 /// few vertices (rocker-arm at 1 bit a vertex: three times its error) for little more inside.
-constexpr double kKeepFactor = 100.0;
+constexpr double kKeepOctaves = 6.643856189774724;  // 100 times
 
 double length(const Vector3& a)
 {
@@ -132,7 +133,7 @@ std::vector<float> keep_factors(std::span<const float> importance)
     {
         factors.resize(importance.size());
         std::ranges::transform(importance, factors.begin(), [](float value) {
-            return static_cast<float>(std::pow(kKeepFactor, static_cast<double>(value)));
+            return static_cast<float>(portable_exp2(kKeepOctaves * static_cast<double>(value)));
         });
     }
     return factors;

@@ -17,7 +17,10 @@ double distance(const HalfEdgeMesh& mesh, std::uint32_t first, std::uint32_t sec
 {
     const auto& a = mesh.point(vertex_handle(first));
     const auto& b = mesh.point(vertex_handle(second));
-    return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+    const double x = a[0] - b[0];
+    const double y = a[1] - b[1];
+    const double z = a[2] - b[2];
+    return std::sqrt(x * x + y * y + z * z);
 }
 
 double mean_of(const std::vector<double>& values)

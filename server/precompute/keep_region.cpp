@@ -62,9 +62,10 @@ std::size_t mark_sphere(
     for (std::size_t vertex = 0; vertex < mesh.positions.size(); ++vertex)
     {
         const auto& [x, y, z] = mesh.positions[vertex];
-        const double distance =
-            std::hypot(x - sphere.centre[0], y - sphere.centre[1], z - sphere.centre[2]);
-        if (distance <= sphere.radius)
+        const double dx = x - sphere.centre[0];
+        const double dy = y - sphere.centre[1];
+        const double dz = z - sphere.centre[2];
+        if (std::sqrt(dx * dx + dy * dy + dz * dz) <= sphere.radius)
         {
             importance[vertex] = 1.0F;
             ++inside;

@@ -3,6 +3,8 @@
 // into a neighbour, coarse vertices a subset of the original).
 #include "precompute/level_builder.h"
 
+#include "core/portable_log.h"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -77,8 +79,7 @@ LevelBuilder::LevelBuilder(
       locked_(locked),
       alive_(mesh.vertices()),
       first_(positions.size(), 0),
-      best_key_(positions.size(), kSettled),
-      face_level_(mesh.face_slots(), 0)
+      best_key_(positions.size(), kSettled)
 {
 }
 
@@ -113,7 +114,7 @@ void LevelBuilder::collect_vertex(std::uint32_t vertex, const LevelStyle& style)
         }
         const Vector3 off = star.offset[kept] - star.mean;
         const double key = style.shape * (1.0 - quality) + style.centring * off_centre +
-                           style.apex * std::log((dot(off, off) + 1.0) / (nearest + 1.0));
+                           style.apex * portable_log((dot(off, off) + 1.0) / (nearest + 1.0));
         candidates_.push_back({
             vertex,
             static_cast<std::uint32_t>(kept),
@@ -168,10 +169,11 @@ void LevelBuilder::rank(const LevelStyle& style)
         candidate.key =
             candidate.price > most
                 ? kSettled
-                : candidate.key + static_cast<float>(
-                                      style.cost_weight *
-                                      std::log(1.0 + static_cast<double>(candidate.price) / median)
-                                  );
+                : candidate.key +
+                      static_cast<float>(
+                          style.cost_weight *
+                          portable_log(1.0 + static_cast<double>(candidate.price) / median)
+                      );
         best_key_[candidate.removed] = std::min(best_key_[candidate.removed], candidate.key);
     }
     for (const std::uint32_t vertex : alive_)
@@ -192,8 +194,7 @@ void LevelBuilder::reward_neighbours(const OneRing& ring, const LevelStyle& styl
     }
     for (std::size_t i = 0; i < ring.face_count; ++i)
     {
-        const std::int32_t face = mesh_.face_across(ring.corner[i]);
-        if (face < 0 || face_level_[static_cast<std::size_t>(face)] == level_)
+        if (mesh_.face_across(ring.corner[i]) < 0)
         {
             continue;
         }
@@ -215,13 +216,6 @@ bool LevelBuilder::try_vertex(
     if (!mesh_.ring(vertex, ring))
     {
         return false;
-    }
-    for (std::size_t i = 0; i < ring.face_count; ++i)
-    {
-        if (face_level_[static_cast<std::size_t>(ring.corner[i] / 3)] == level_)
-        {
-            return false;
-        }
     }
     std::array<const Candidate*, OneRing::kMost> choices{};
     std::size_t count = 0;
@@ -246,9 +240,10 @@ bool LevelBuilder::try_vertex(
         {
             continue;
         }
-        for (std::size_t f = 0; f < ring.face_count; ++f)
+        // Stars share a face exactly when their centres are neighbours.
+        for (std::size_t neighbour = 0; neighbour < ring.size; ++neighbour)
         {
-            face_level_[static_cast<std::size_t>(ring.corner[f] / 3)] = level_;
+            best_key_[ring.vertex[neighbour]] = kSettled;
         }
         reward_neighbours(ring, style);
         done.push_back(describe_collapse(vertex, ring, kept));
@@ -278,7 +273,6 @@ codec::Collapse describe_collapse(std::uint32_t removed, const OneRing& ring, st
 
 std::vector<codec::Collapse> LevelBuilder::next_level(const LevelStyle& style, std::size_t most)
 {
-    ++level_;
     collect(style);
     rank(style);
     std::vector<codec::Collapse> done;

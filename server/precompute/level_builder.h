@@ -75,12 +75,12 @@ private:
     std::span<const Vector3> positions_;
     std::span<const std::uint8_t> locked_;
     std::vector<std::uint32_t> alive_;
-    std::vector<Candidate> candidates_;      ///< Grouped by removed vertex.
-    std::vector<std::uint32_t> first_;       ///< By vertex its first candidate.
-    std::vector<float> best_key_;            ///< By vertex the least key; infinite when settled.
-    std::vector<std::uint32_t> face_level_;  ///< By face the level that took it.
+    std::vector<Candidate> candidates_;  ///< Grouped by removed vertex.
+    std::vector<std::uint32_t> first_;   ///< By vertex its first candidate.
+    /// By vertex the least key; infinite when it is removed, shares a face with a removed one's star,
+    /// or cannot go.
+    std::vector<float> best_key_;
     std::vector<std::pair<float, std::uint32_t>> heap_;
-    std::uint32_t level_ = 0;
 };
 
 }  // namespace vsplit::precompute
