@@ -6,6 +6,7 @@
 #include "codec/connectivity_coder.h"
 #include "codec/geometry_coder.h"
 #include "codec/initial_model.h"
+#include "codec/refinement_coder.h"
 #include "codec/refinement_mesh.h"
 #include "core/result.h"
 
@@ -45,33 +46,85 @@ inline constexpr std::size_t kMaxBatches = std::size_t{1} << kBatchCountBits;
 /// Bits of the field that tells how many splits a batch has, unless it is the chunk's last one.
 inline constexpr int kSplitCountBits = 12;
 
-/// Starts a level of shift `shift`, at most that of the level before: one bit an axis and step for every
-/// known vertex. `full`: full-precision positions by vertex, encoder only. Safe on untrusted input.
+/// Says whether a target lies outside of the cell that its vertex is in; false in a decoder.
 template <typename Coder>
-void code_level_start(
-    Coder& coder, BatchState& state, int shift, std::span<const std::array<std::int32_t, 3>> full
+[[nodiscard]] bool leaves_cells(
+    const Coder& /*coder*/,
+    const BatchState& state,
+    int steps,
+    std::span<const std::array<std::int32_t, 3>> target
+)
+{
+    if constexpr (Coder::kEncodes)
+    {
+        for (std::uint32_t v = 0; v < state.mesh.vertex_count(); ++v)
+        {
+            const Point& point = state.mesh.points()[v];
+            if (target[v][0] >> steps != static_cast<std::int32_t>(point.x) ||
+                target[v][1] >> steps != static_cast<std::int32_t>(point.y) ||
+                target[v][2] >> steps != static_cast<std::int32_t>(point.z))
+            {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+/// Codes what every known vertex adds to its position when `steps` bits of precision are gained.
+/// `target`: positions by vertex on the new grid, encoder only.
+/// Error: BadChunk when a vertex leaves the grid. Safe on untrusted input.
+template <typename Coder>
+[[nodiscard]] Result<void> refine_positions(
+    Coder& coder, BatchState& state, int steps, std::span<const std::array<std::int32_t, 3>> target
 )
 {
     Point* const points = state.mesh.points();
-    const int steps = state.shift - shift;
-    const auto scale = static_cast<float>(1 << steps);
-    for (std::uint32_t v = 0; steps > 0 && v < state.mesh.vertex_count(); ++v)
+    const std::int32_t scale = std::int32_t{1} << steps;
+    const std::int32_t most = state.max_index();
+    const bool moving = coder.raw(leaves_cells(coder, state, steps, target) ? 1U : 0U, 1) != 0;
+    for (std::uint32_t v = 0; v < state.mesh.vertex_count(); ++v)
     {
-        std::array<std::uint32_t, 3> low{};
+        std::array<float, 3> position{points[v].x, points[v].y, points[v].z};
+        std::size_t left = 0;
         for (std::size_t axis = 0; axis < 3; ++axis)
         {
-            std::uint32_t wanted = 0;
+            const std::int32_t corner = static_cast<std::int32_t>(position[axis]) * scale;
+            std::int32_t added = 0;
             if constexpr (Coder::kEncodes)
             {
-                wanted = static_cast<std::uint32_t>(full[v][axis] >> shift);
+                added = target[v][axis] - corner;
+                if (!is_in_reach(added, steps))
+                {
+                    return fail(ErrorCode::Internal, "a vertex is too far from where it was");
+                }
             }
-            low[axis] = coder.raw(wanted, steps);
+            added = moving ? code_step(coder, state.model.refinement, added, steps, left)
+                           : static_cast<std::int32_t>(
+                                 coder.raw(static_cast<std::uint32_t>(added), steps)
+                             );
+            if (corner + added < 0 || corner + added > most)
+            {
+                return fail(ErrorCode::BadChunk, "a vertex leaves the grid");
+            }
+            position[axis] = static_cast<float>(corner + added);
         }
-        points[v].x = points[v].x * scale + static_cast<float>(low[0]);
-        points[v].y = points[v].y * scale + static_cast<float>(low[1]);
-        points[v].z = points[v].z * scale + static_cast<float>(low[2]);
+        points[v] = Point{position[0], position[1], position[2]};
     }
+    return {};
+}
+
+/// Starts a level of shift `shift`, at most that of the level before. `target`: positions by vertex on
+/// its grid, encoder only.
+/// Error: BadChunk when a vertex leaves the grid. Safe on untrusted input.
+template <typename Coder>
+[[nodiscard]] Result<void> code_level_start(
+    Coder& coder, BatchState& state, int shift, std::span<const std::array<std::int32_t, 3>> target
+)
+{
+    const int steps = state.shift - shift;
     state.shift = shift;
+    return steps > 0 ? refine_positions(coder, state, steps, target) : Result<void>{};
 }
 
 /// Starts a batch: measures the edges and frees every face.

@@ -2,6 +2,7 @@
 
 #include "codec/connectivity_model.h"
 #include "codec/geometry_coder.h"
+#include "codec/refinement_coder.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -15,6 +16,7 @@ struct LearnedModel
 {
     ConnectivityModel connectivity;
     GeometryModel geometry;
+    RefinementModel refinement;
 };
 
 /// Returns the state in which every stream starts: what coding typical meshes teaches, so that small

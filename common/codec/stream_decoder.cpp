@@ -216,7 +216,7 @@ private:
         std::uint32_t batches = 1;
         if (info_->chunks[next_ - 1].ends_level)
         {
-            code_level_start(bits, state_, chunk.shift, {});
+            VSPLIT_TRY(code_level_start(bits, state_, chunk.shift, {}));
             batches = bits.raw(0, kBatchCountBits) + 1;
             start_batch(state_);
         }

@@ -3,6 +3,7 @@
 #include "codec/base_mesh_encoder.h"
 #include "codec/batch_coder.h"
 #include "codec/entropy_coder.h"
+#include "codec/grid_positions.h"
 #include "codec/stitch_coder.h"
 #include "codec/stream_header_writer.h"
 #include "codec/weight_fit.h"
@@ -28,7 +29,10 @@ class StreamBuilder
 {
 public:
     StreamBuilder(const StreamPlan& plan, const std::function<void(double)>& progress)
-        : plan_(plan), progress_(progress), place_(plan.mesh->positions.size(), kNoVertex)
+        : plan_(plan),
+          progress_(progress),
+          place_(plan.mesh->positions.size(), kNoVertex),
+          on_grid_(*plan.mesh)
     {
         if (plan.training != nullptr)
         {
@@ -57,16 +61,6 @@ public:
     }
 
 private:
-    std::array<std::int32_t, 3> on_grid(std::uint32_t source, int shift) const
-    {
-        std::array<std::int32_t, 3> position = plan_.mesh->positions[source];
-        for (std::int32_t& coordinate : position)
-        {
-            coordinate >>= shift;
-        }
-        return position;
-    }
-
     void add_chunk(
         proto::ChunkKind kind, std::span<const std::byte> bytes, const PlannedLevel* ends
     )
@@ -102,12 +96,12 @@ private:
     {
         place_[source] = static_cast<std::uint32_t>(source_.size());
         source_.push_back(source);
-        full_.push_back(plan_.mesh->positions[source]);
     }
 
     Result<void> add_base()
     {
         const PlannedLevel& level = plan_.levels.front();
+        on_grid_.enter(level, true);
         GridMesh base;
         std::vector<std::uint32_t> sources;
         std::vector<std::uint32_t> place(plan_.mesh->positions.size(), kNoVertex);
@@ -121,7 +115,7 @@ private:
                 {
                     index = static_cast<std::uint32_t>(sources.size());
                     sources.push_back(triangle[k]);
-                    base.positions.push_back(on_grid(triangle[k], level.shift));
+                    base.positions.push_back(on_grid_[triangle[k]]);
                 }
                 renumbered[k] = index;
             }
@@ -230,7 +224,9 @@ private:
         {
             return fail(ErrorCode::Internal, "a level takes precision back");
         }
-        code_level_start(bits, state_, level.shift, full_);
+        on_grid_.enter(level, level.shift != shift);
+        const auto target = on_grid_.of(source_);
+        VSPLIT_TRY(code_level_start(bits, state_, level.shift, target));
         bits.raw(static_cast<std::uint32_t>(level.batches.size() - 1), kBatchCountBits);
         for (std::size_t i = 0; i + 1 < level.batches.size(); ++i)
         {
@@ -244,7 +240,7 @@ private:
         }
         start_batch(state_);
         const std::size_t refinement =
-            full_.size() * 3 * static_cast<std::size_t>(shift - state_.shift) / 8;
+            source_.size() * 3 * static_cast<std::size_t>(shift - state_.shift) / 8;
         return add_last_batch(bits, level, refinement);
     }
 
@@ -294,7 +290,7 @@ private:
         {
             const Split& split = state_.splits[i];
             const std::uint32_t removed = batch[split.source].removed;
-            positions.push_back(on_grid(removed, state_.shift));
+            positions.push_back(on_grid_[removed]);
             place_vertex(removed);
             if (split.kind == SplitKind::Interior)
             {
@@ -345,7 +341,7 @@ private:
         }
         BitEncoder bits;
         code_stitches(
-            bits, [this](std::uint32_t v) { return full_[v]; }, stitches
+            bits, [this](std::uint32_t v) { return plan_.mesh->positions[source_[v]]; }, stitches
         );
         ByteWriter chunk;
         bits.finish(chunk);
@@ -379,7 +375,7 @@ private:
     BatchState state_;
     std::vector<std::uint32_t> place_;   ///< By vertex of the plan its index in the stream.
     std::vector<std::uint32_t> source_;  ///< By vertex of the stream its index in the plan.
-    std::vector<std::array<std::int32_t, 3>> full_;  ///< Positions by vertex of the stream.
+    GridPositions on_grid_;
     std::vector<ChunkInfo> chunks_;
     ByteWriter payload_;
     std::uint32_t content_checksum_ = 0;

@@ -25,13 +25,23 @@ struct Collapse
     SplitKind kind = SplitKind::Interior;
 };
 
+/// A vertex that is shown elsewhere than at its own position, where the surface is followed better.
+struct Displacement
+{
+    std::uint32_t vertex = 0;
+    std::array<std::int32_t, 3> position{};  ///< On the level's grid.
+};
+
 /// One level of the plan: the collapses that its batches undo, and how it looks when shown.
 struct PlannedLevel
 {
     /// Batches of collapses, coarsest first; within a batch the faces of their stars are disjoint. One
     /// batch, or up to kMaxBatches small ones that share a chunk. Empty for the base.
     std::vector<std::vector<Collapse>> batches;
-    int shift = 0;           ///< Precision of the level; never grows from level to level.
+    int shift = 0;  ///< Precision of the level; never grows from level to level.
+    /// From this level on, as long as the shift stays the same. Only where the shift changes, and of
+    /// vertices that the level has.
+    std::vector<Displacement> displaced;
     double rms_error = 0.0;  ///< Model units.
     double max_error = 0.0;  ///< Model units.
 };

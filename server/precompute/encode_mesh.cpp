@@ -98,18 +98,10 @@ struct Sequence
     std::vector<Triangle> base;        ///< The triangles that it leaves.
 };
 
-Sequence make_sequence(
-    const IndexedMesh& mesh,
-    std::span<const Vector3> exact,
-    std::span<const std::uint32_t> stitches,
-    std::vector<float> weights,
-    const EncodeOptions& options,
-    const ProgressSink& progress
-)
+/// Copies of a cut vertex stay where they are, otherwise the cut would open.
+std::vector<std::uint8_t> lock_copies(std::span<const std::uint32_t> stitches)
 {
-    const auto vertex_count = static_cast<std::uint32_t>(exact.size());
-    // Copies of a cut vertex stay where they are, otherwise the cut would open.
-    std::vector<std::uint8_t> locked(stitches.empty() ? 0 : vertex_count, 0);
+    std::vector<std::uint8_t> locked(stitches.size(), 0);
     for (std::uint32_t v = 0; v < stitches.size(); ++v)
     {
         if (stitches[v] != v)
@@ -118,6 +110,19 @@ Sequence make_sequence(
             locked[stitches[v]] = 1;
         }
     }
+    return locked;
+}
+
+Sequence make_sequence(
+    const IndexedMesh& mesh,
+    std::span<const Vector3> exact,
+    std::span<const std::uint8_t> locked,
+    std::vector<float> weights,
+    const EncodeOptions& options,
+    const ProgressSink& progress
+)
+{
+    const auto vertex_count = static_cast<std::uint32_t>(exact.size());
     CollapseMesh working(vertex_count, mesh.triangles);
     CollapseCost cost(options.metric, exact, working, std::move(weights), options.importance);
     LevelBuilder builder(working, cost, exact, locked);
@@ -176,7 +181,7 @@ codec::StreamPlan make_plan(
     Sequence& sequence,
     const QuantizationGrid& grid,
     const GridMesh& mesh,
-    std::span<const LevelError> errors,
+    std::span<LevelError> errors,
     std::span<const std::uint32_t> stitches
 )
 {
@@ -193,6 +198,7 @@ codec::StreamPlan make_plan(
             planned.batches = std::move(sequence.levels[level - 1]);
         }
         planned.shift = errors[level].shift;
+        planned.displaced = std::move(errors[level].displaced);
         planned.rms_error = errors[level].distance.rms * grid.cell;
         planned.max_error = errors[level].distance.max * grid.cell;
         plan.levels.push_back(std::move(planned));
@@ -259,17 +265,15 @@ Result<EncodedMesh> encode_mesh(
     std::ranges::transform(mesh.positions, exact.begin(), [&](const auto& point) {
         return (point - grid.origin) * (1.0 / grid.cell);
     });
-    Sequence sequence =
-        make_sequence(mesh, exact, stitches, std::move(*weights), options, progress);
+    const auto locked = lock_copies(stitches);
+    Sequence sequence = make_sequence(mesh, exact, locked, std::move(*weights), options, progress);
     result.seconds.collapse = lap(start);
 
     order_levels(sequence);
-    const auto errors = measure_levels(
-        exact,
-        quantised,
+    auto errors = measure_levels(
+        {.exact = exact, .mesh = &quantised, .locked = locked, .bits = grid.bits},
         sequence.levels,
         options.importance,
-        grid.bits,
         options.threads,
         stage_progress(progress, "measure")
     );

@@ -17,9 +17,13 @@ namespace {
 constexpr std::size_t kFewestSamples = 2000;
 constexpr std::size_t kMostSamples = 4000;
 
-/// Samples in the direction from coarse to source. With coarse vertices a subset of the source's that
+/// Samples in the direction from coarse to source. With coarse vertices near those of the source that
 /// direction is hardly ever the larger one, so that fewer points will do.
 constexpr std::size_t kCoarseSamples = 500;
+
+/// Corners of faces that are measured in that direction too, for the maximum: vertices that are shown
+/// off the source are furthest away.
+constexpr std::size_t kCoarseCorners = 600;
 
 /// Samples on the watched region.
 constexpr std::size_t kRegionSamples = 800;
@@ -101,17 +105,31 @@ ErrorTracker::ErrorTracker(
 )
     : exact_(exact),
       source_(mesh),
+      importance_(importance),
       threads_(threads),
       mesh_(static_cast<std::uint32_t>(exact.size()), mesh.triangles),
       kept_of_(exact.size(), 0),
-      faces_(mesh.triangles.size()),
       tree_(to_float(exact), mesh.triangles)
 {
+    place_all_samples();
+}
+
+void ErrorTracker::restart()
+{
+    mesh_ = CollapseMesh(static_cast<std::uint32_t>(exact_.size()), source_.triangles);
+    vertices_.clear();
+    shown_shift_ = -1;
+    place_all_samples();
+}
+
+void ErrorTracker::place_all_samples()
+{
+    faces_.resize(source_.triangles.size());
     std::iota(faces_.begin(), faces_.end(), std::uint32_t{0});
     samples_ = place_samples(
-        source_.triangles, std::clamp(exact.size() / 4, kFewestSamples, kMostSamples)
+        source_.triangles, std::clamp(exact_.size() / 4, kFewestSamples, kMostSamples)
     );
-    if (const auto marked = marked_triangles(source_.triangles, importance); !marked.empty())
+    if (const auto marked = marked_triangles(source_.triangles, importance_); !marked.empty())
     {
         region_ = place_samples(marked, kRegionSamples);
     }
@@ -222,14 +240,24 @@ Position ErrorTracker::shown(std::uint32_t vertex, int shift) const
     Position point{};
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
-        const std::int32_t corner = source_.positions[vertex][axis] >> shift << shift;
+        const std::int32_t corner = cells_[vertex][axis] * (std::int32_t{1} << shift);
         point[axis] = static_cast<float>(corner) + 0.5F * static_cast<float>(half);
     }
     return point;
 }
 
-SurfaceDistance ErrorTracker::measure(int shift)
+std::vector<Triangle> ErrorTracker::triangles() const
 {
+    std::vector<Triangle> triangles(faces_.size());
+    std::ranges::transform(faces_, triangles.begin(), [this](std::uint32_t face) {
+        return mesh_.triangle(face);
+    });
+    return triangles;
+}
+
+SurfaceDistance ErrorTracker::measure(int shift, std::span<const std::array<std::int32_t, 3>> cells)
+{
+    cells_ = cells;
     update_shown(shift);
     Sums there = sum(samples_);
     there.max_square = std::max(there.max_square, sum(vertices_).max_square);
@@ -308,7 +336,15 @@ ErrorTracker::Sums ErrorTracker::measure_coarse(int shift) const
             samples[i].shown_square = tree_.squared_distance(drawn[i].point, hint);
         }
     });
-    return sum(samples);
+    Sums sums = sum(samples);
+    const std::size_t corner_step = surface.positions.size() / kCoarseCorners + 1;
+    for (std::size_t i = 0; i < surface.positions.size(); i += corner_step)
+    {
+        std::uint32_t hint = faces_[i / 3 * step];
+        sums.max_square =
+            std::max<double>(sums.max_square, tree_.squared_distance(surface.positions[i], hint));
+    }
+    return sums;
 }
 
 }  // namespace vsplit::precompute

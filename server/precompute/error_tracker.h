@@ -34,6 +34,15 @@ public:
         unsigned threads
     );
 
+    /// Goes back to the complete mesh.
+    void restart();
+
+    /// Tree of the source.
+    [[nodiscard]] const ClosestPointTree& tree() const { return tree_; }
+
+    /// The coarse mesh's faces, in vertices of the source.
+    [[nodiscard]] std::vector<Triangle> triangles() const;
+
     /// Carries out collapses that are possible now, the costliest one last.
     void collapse(std::span<const codec::Collapse> batch);
 
@@ -48,11 +57,14 @@ public:
     /// Cost: linear in the samples that moved.
     [[nodiscard]] SourceError follow();
 
-    /// Measures the coarse mesh as it is shown without the lowest `shift` bits of its positions.
+    /// Measures the coarse mesh as it is shown. `cells`: by vertex its position on the grid without the
+    /// lowest `shift` bits; the same as in the call before when the shift is the same.
     /// Precondition: follow(). Result: the larger of both directions; at least the true distance of
     /// the samples. Cost: linear in the samples that moved, or all when the shift changes, and one
     /// search in the tree for each sample of the other direction.
-    [[nodiscard]] SurfaceDistance measure(int shift);
+    [[nodiscard]] SurfaceDistance measure(
+        int shift, std::span<const std::array<std::int32_t, 3>> cells
+    );
 
 private:
     /// A point on the source, and where it is closest to the coarse mesh.
@@ -79,6 +91,7 @@ private:
         std::vector<Triangle> triangles;
     };
 
+    void place_all_samples();
     static Sums sum(std::span<const Sample> samples);
     [[nodiscard]] std::vector<Sample> place_samples(
         std::span<const Triangle> triangles, std::size_t count
@@ -95,6 +108,7 @@ private:
 
     std::span<const Vector3> exact_;
     const GridMesh& source_;
+    std::span<const float> importance_;
     unsigned threads_;
     CollapseMesh mesh_;
     std::vector<std::uint32_t> kept_of_;  ///< By removed vertex the one it was folded into.
@@ -104,6 +118,7 @@ private:
     std::vector<Sample> vertices_;  ///< Removed vertices that are far off, for the maximum only.
     ClosestPointTree tree_;
     int shown_shift_ = -1;
+    std::span<const std::array<std::int32_t, 3>> cells_;  ///< Of the call of measure() that runs.
 };
 
 }  // namespace vsplit::precompute

@@ -89,6 +89,7 @@ class Splits:
         self.t = {name: Weights(entries, packed) for name, entries in TABLES.items()}
         self.tangential = [[IntegerModel(packed) for _ in range(32)] for _ in range(2)]
         self.along_normal = [IntegerModel(packed) for _ in range(48)]
+        self.further = [[[8192, 8] for _ in range(16)] for _ in range(3)]
         self.weights = [26, 6, 3, 11, 16]
 
     def chosen(self, **indices):
@@ -96,11 +97,29 @@ class Splits:
 
     def start_level(self, bits, shift):
         mesh = self.mesh
-        steps, mesh.shift = mesh.shift - shift, shift
-        for v in range(len(mesh.positions) if steps > 0 else 0):
-            mesh.positions[v] = tuple(
-                (x << steps) + bits.raw(steps, f"vertex {v} {axis}")
-                for x, axis in zip(mesh.positions[v], "xyz"))
+        d, mesh.shift = mesh.shift - shift, shift
+        if d == 0:
+            return
+        moving = bits.raw(1, "moving")
+        for v, position in enumerate(mesh.positions):
+            self.left, moved = 0, []
+            for x, axis in zip(position, "xyz"):
+                name = f"vertex {v} {axis}"
+                x = (x << d) + (self.step(bits, d, name) if moving else bits.raw(d, name))
+                if not 0 <= x <= (1 << mesh.bits) - 1 >> shift:
+                    raise Refusal("bad-chunk", "a vertex leaves the grid")
+                moved.append(x)
+            mesh.positions[v] = tuple(moved)
+
+    def step(self, bits, d, name):
+        upper, cells = bits.raw(1, name + " upper"), 0
+        further = self.further[self.left]
+        while cells < 16 and bits.adaptive(further[cells], name + " further"):
+            cells += 1
+        if cells > 0:
+            self.left += 1
+        half = cells + 1 if upper else -cells
+        return (half << (d - 1)) + bits.raw(d - 1, name + " low bits")
 
     def start_batch(self):
         mesh = self.mesh
