@@ -27,16 +27,6 @@ Point subtract(const Point& a, const Point& b)
     return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
 
-float dot(const Point& a, const Point& b)
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-float inverse_or_zero(float value)
-{
-    return value > 0.0F ? 1.0F / value : 0.0F;
-}
-
 struct Visit
 {
     float squared_distance;
@@ -65,19 +55,23 @@ ClosestPointTree::ClosestPointTree(
 {
     VSPLIT_ASSERT(!triangles.empty());
     fit_to_box(positions);
+    positions_.resize(positions.size());
+    std::ranges::transform(positions, positions_.begin(), [this](const Point& point) {
+        return normalised(point);
+    });
     std::vector<Item> items(triangles.size());
     for (std::uint32_t i = 0; i < items.size(); ++i)
     {
-        const Point a = normalised(positions[triangles[i][0]]);
-        const Point b = normalised(positions[triangles[i][1]]);
-        const Point c = normalised(positions[triangles[i][2]]);
+        const Point& a = positions_[triangles[i][0]];
+        const Point& b = positions_[triangles[i][1]];
+        const Point& c = positions_[triangles[i][2]];
         items[i] = {{a[0] + b[0] + c[0], a[1] + b[1] + c[1], a[2] + b[2] + c[2]}, i};
     }
     leaf_of_triangle_.resize(triangles.size());
     leaves_.reserve((triangles.size() + kWidth - 1) / kWidth);
     nodes_.reserve(leaves_.capacity() / 2 + 1);
     nodes_.emplace_back();
-    build_node({positions, triangles}, items, 0);
+    build_node(triangles, items, 0);
 }
 
 /// Fourth powers of lengths occur below; at unit size they neither overflow nor vanish, whatever the
@@ -148,7 +142,7 @@ std::size_t ClosestPointTree::split_leaves(std::span<Item> items)
 }
 
 ClosestPointTree::Box ClosestPointTree::build_node(
-    const Source& source, std::span<Item> items, std::uint32_t node
+    std::span<const Triangle> triangles, std::span<Item> items, std::uint32_t node
 )
 {
     const std::size_t half = split_leaves(items);
@@ -165,7 +159,7 @@ ClosestPointTree::Box ClosestPointTree::build_node(
     Box box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
     for (std::size_t lane = 0; lane < kWidth; ++lane)
     {
-        const Box part = build_child(source, parts[lane], node, lane);
+        const Box part = build_child(triangles, parts[lane], node, lane);
         for (std::size_t axis = 0; axis < 3; ++axis)
         {
             nodes_[node].low[axis][lane] = part.low[axis];
@@ -178,7 +172,7 @@ ClosestPointTree::Box ClosestPointTree::build_node(
 }
 
 ClosestPointTree::Box ClosestPointTree::build_child(
-    const Source& source, std::span<Item> items, std::uint32_t node, std::size_t lane
+    std::span<const Triangle> triangles, std::span<Item> items, std::uint32_t node, std::size_t lane
 )
 {
     if (items.empty())
@@ -190,16 +184,16 @@ ClosestPointTree::Box ClosestPointTree::build_child(
         const auto leaf = static_cast<std::uint32_t>(leaves_.size());
         leaves_.emplace_back();
         nodes_[node].child[lane] = leaf | kLeafBit;
-        return build_leaf(source, items, leaf);
+        return build_leaf(triangles, items, leaf);
     }
     const auto child = static_cast<std::uint32_t>(nodes_.size());
     nodes_.emplace_back();
     nodes_[node].child[lane] = child;
-    return build_node(source, items, child);
+    return build_node(triangles, items, child);
 }
 
 ClosestPointTree::Box ClosestPointTree::build_leaf(
-    const Source& source, std::span<const Item> items, std::uint32_t leaf
+    std::span<const Triangle> triangles, std::span<const Item> items, std::uint32_t leaf
 )
 {
     Leaf& target = leaves_[leaf];
@@ -208,46 +202,43 @@ ClosestPointTree::Box ClosestPointTree::build_leaf(
     {
         // A leaf with fewer triangles repeats its last one.
         const std::uint32_t index = items[std::min(lane, items.size() - 1)].triangle;
-        const Triangle& triangle = source.triangles[index];
-        const Point a = normalised(source.positions[triangle[0]]);
-        const Point b = normalised(source.positions[triangle[1]]);
-        const Point c = normalised(source.positions[triangle[2]]);
-        const Point ab = subtract(b, a);
-        const Point ac = subtract(c, a);
-        const Point bc = subtract(c, b);
-        const float determinant = dot(ab, ab) * dot(ac, ac) - dot(ab, ac) * dot(ab, ac);
-        for (std::size_t axis = 0; axis < 3; ++axis)
-        {
-            target.corner[axis][lane] = a[axis];
-            target.edge_ab[axis][lane] = ab[axis];
-            target.edge_ac[axis][lane] = ac[axis];
-            box.low[axis] = std::min({box.low[axis], a[axis], b[axis], c[axis]});
-            box.high[axis] = std::max({box.high[axis], a[axis], b[axis], c[axis]});
-        }
-        target.inverse_ab[lane] = inverse_or_zero(dot(ab, ab));
-        target.inverse_ac[lane] = inverse_or_zero(dot(ac, ac));
-        target.inverse_bc[lane] = inverse_or_zero(dot(bc, bc));
-        target.inverse_determinant[lane] = inverse_or_zero(determinant);
+        target.corners[lane] = triangles[index];
         target.triangle[lane] = index;
         leaf_of_triangle_[index] = leaf;
+        for (const std::uint32_t corner : triangles[index])
+        {
+            const Point& point = positions_[corner];
+            for (std::size_t axis = 0; axis < 3; ++axis)
+            {
+                box.low[axis] = std::min(box.low[axis], point[axis]);
+                box.high[axis] = std::max(box.high[axis], point[axis]);
+            }
+        }
     }
     return box;
 }
 
 void ClosestPointTree::closest_in_leaf(
     const Leaf& leaf, const std::array<float, 3>& point, Hit& best
-)
+) const
 {
-    const lanes::Vector4 to_point = lanes::splat(point) - lanes::load(leaf.corner);
-    const lanes::TriangleInverses inverse{
-        lanes::load(leaf.inverse_ab),
-        lanes::load(leaf.inverse_ac),
-        lanes::load(leaf.inverse_bc),
-        lanes::load(leaf.inverse_determinant),
+    const auto corner = [&](std::size_t k) {
+        std::array<Lanes, 3> lists{};
+        for (std::size_t lane = 0; lane < kWidth; ++lane)
+        {
+            const Point& position = positions_[leaf.corners[lane][k]];
+            for (std::size_t axis = 0; axis < 3; ++axis)
+            {
+                lists[axis][lane] = position[axis];
+            }
+        }
+        return lanes::load(lists);
     };
-    const lanes::Float4 squared = lanes::squared_distance(
-        to_point, lanes::load(leaf.edge_ab), lanes::load(leaf.edge_ac), inverse
-    );
+    const lanes::Vector4 a = corner(0);
+    const lanes::Vector4 ab = corner(1) - a;
+    const lanes::Vector4 ac = corner(2) - a;
+    const lanes::Float4 squared =
+        lanes::squared_distance(lanes::splat(point) - a, ab, ac, lanes::invert(ab, ac));
     const Lanes distances = lanes::store(squared);
     for (std::size_t lane = 0; lane < kWidth; ++lane)
     {

@@ -32,17 +32,10 @@ private:
     static constexpr std::size_t kWidth = 4;
     using Lanes = std::array<float, kWidth>;
 
-    /// Four triangles: corner a, edges b - a and c - a, and the inverses that a query divides by
-    /// (0 where the edge or the triangle is degenerate).
-    struct alignas(16) Leaf
+    /// Four triangles and their corners.
+    struct Leaf
     {
-        std::array<Lanes, 3> corner{};
-        std::array<Lanes, 3> edge_ab{};
-        std::array<Lanes, 3> edge_ac{};
-        Lanes inverse_ab{};
-        Lanes inverse_ac{};
-        Lanes inverse_bc{};
-        Lanes inverse_determinant{};
+        std::array<Triangle, kWidth> corners{};
         std::array<std::uint32_t, kWidth> triangle{};
     };
 
@@ -73,26 +66,26 @@ private:
         std::uint32_t triangle;
     };
 
-    struct Source
-    {
-        std::span<const std::array<float, 3>> positions;
-        std::span<const Triangle> triangles;
-    };
-
     static constexpr std::uint32_t kLeafBit = 0x8000'0000U;
 
     void fit_to_box(std::span<const std::array<float, 3>> positions);
     [[nodiscard]] std::array<float, 3> normalised(const std::array<float, 3>& point) const;
     static std::size_t split_leaves(std::span<Item> items);
-    Box build_leaf(const Source& source, std::span<const Item> items, std::uint32_t leaf);
-    Box build_node(const Source& source, std::span<Item> items, std::uint32_t node);
-    Box build_child(
-        const Source& source, std::span<Item> items, std::uint32_t node, std::size_t lane
+    Box build_leaf(
+        std::span<const Triangle> triangles, std::span<const Item> items, std::uint32_t leaf
     );
-    static void closest_in_leaf(const Leaf& leaf, const std::array<float, 3>& point, Hit& best);
+    Box build_node(std::span<const Triangle> triangles, std::span<Item> items, std::uint32_t node);
+    Box build_child(
+        std::span<const Triangle> triangles,
+        std::span<Item> items,
+        std::uint32_t node,
+        std::size_t lane
+    );
+    void closest_in_leaf(const Leaf& leaf, const std::array<float, 3>& point, Hit& best) const;
 
     std::array<float, 3> centre_{};
     float scale_ = 1.0F;  ///< A power of two that brings the mesh to about unit size.
+    std::vector<std::array<float, 3>> positions_;  ///< Normalised.
     std::vector<Node> nodes_;
     std::vector<Leaf> leaves_;
     std::vector<std::uint32_t> leaf_of_triangle_;

@@ -6,6 +6,8 @@
 #include "precompute/half_edge_mesh.h"
 #include "precompute/level_builder.h"
 #include "precompute/level_errors.h"
+#include "precompute/mesh_order.h"
+#include "precompute/validate.h"
 
 #include <algorithm>
 #include <chrono>
@@ -90,6 +92,18 @@ LevelStyle style_for(Metric metric, std::size_t vertices, std::size_t all)
     return style;
 }
 
+/// What is encoded, in an order in which neighbours are near in memory.
+struct Source
+{
+    QuantizationGrid grid;
+    GridMesh quantised;
+    std::vector<Vector3> exact;  ///< Positions in grid units, not rounded.
+    std::vector<std::uint32_t> stitches;
+    std::vector<std::uint8_t> locked;  ///< Vertices that are never removed; or empty.
+    std::vector<float> importance;
+    std::vector<float> weights;  ///< What the metric needs.
+};
+
 /// The collapse sequence.
 struct Sequence
 {
@@ -113,19 +127,14 @@ std::vector<std::uint8_t> lock_copies(std::span<const std::uint32_t> stitches)
     return locked;
 }
 
-Sequence make_sequence(
-    const IndexedMesh& mesh,
-    std::span<const Vector3> exact,
-    std::span<const std::uint8_t> locked,
-    std::vector<float> weights,
-    const EncodeOptions& options,
-    const ProgressSink& progress
-)
+Sequence make_sequence(Source& source, const EncodeOptions& options, const ProgressSink& progress)
 {
-    const auto vertex_count = static_cast<std::uint32_t>(exact.size());
-    CollapseMesh working(vertex_count, mesh.triangles);
-    CollapseCost cost(options.metric, exact, working, std::move(weights), options.importance);
-    LevelBuilder builder(working, cost, exact, locked);
+    const auto vertex_count = static_cast<std::uint32_t>(source.exact.size());
+    CollapseMesh working(vertex_count, source.quantised.triangles);
+    CollapseCost cost(
+        options.metric, source.exact, working, std::move(source.weights), source.importance
+    );
+    LevelBuilder builder(working, cost, source.exact, source.locked, options.threads);
     const std::size_t base = next_stop(options, 0);
     Sequence sequence;
     while (builder.vertex_count() > base)
@@ -177,19 +186,14 @@ void order_levels(Sequence& sequence)
     sequence.levels = std::move(joined);
 }
 
-codec::StreamPlan make_plan(
-    Sequence& sequence,
-    const QuantizationGrid& grid,
-    const GridMesh& mesh,
-    std::span<LevelError> errors,
-    std::span<const std::uint32_t> stitches
-)
+codec::StreamPlan make_plan(Sequence& sequence, const Source& source, std::span<LevelError> errors)
 {
+    const QuantizationGrid& grid = source.grid;
     codec::StreamPlan plan;
     plan.grid = grid;
-    plan.mesh = &mesh;
+    plan.mesh = &source.quantised;
     plan.base_triangles = std::move(sequence.base);
-    plan.stitches = stitches;
+    plan.stitches = source.stitches;
     for (std::size_t level = 0; level < errors.size(); ++level)
     {
         codec::PlannedLevel planned;
@@ -206,7 +210,7 @@ codec::StreamPlan make_plan(
     return plan;
 }
 
-/// Refuses what no stream can hold.
+/// Refuses what no stream can hold and what is no mesh.
 Result<void> check_size(const IndexedMesh& mesh)
 {
     if (mesh.triangles.empty() || mesh.positions.size() < 3)
@@ -219,16 +223,55 @@ Result<void> check_size(const IndexedMesh& mesh)
             ErrorCode::InputTooLarge, "the mesh has more vertices or faces than a stream can hold"
         );
     }
+    for (const auto& [a, b, c] : mesh.triangles)
+    {
+        if (std::max({a, b, c}) >= mesh.positions.size())
+        {
+            return fail(ErrorCode::BadIndex, "a face refers to a vertex that does not exist");
+        }
+    }
     return {};
 }
 
-/// Checks the mesh and finds what its metric needs. The half-edge mesh goes when this ends, before the
-/// stages that take the most memory.
+/// Finds what the metric needs. The half-edge mesh goes when this ends, before the stages that take the
+/// most memory.
 Result<std::vector<float>> find_weights(const IndexedMesh& mesh, const EncodeOptions& options)
 {
     const auto linked = make_half_edge_mesh(mesh);
     VSPLIT_TRY(linked);
     return vertex_weights(*linked, options.metric, options.threads);
+}
+
+/// Checks a mesh and puts it in order.
+Result<Source> prepare(
+    const IndexedMesh& mesh, std::span<const std::uint32_t> stitches, const EncodeOptions& options
+)
+{
+    const auto order = locality_order(mesh.positions);
+    const IndexedMesh ordered = in_order(mesh, order);
+    Source source;
+    auto weights = find_weights(ordered, options);
+    if (!weights)
+    {
+        VSPLIT_TRY(check_manifold(mesh));  // names vertices and faces as the caller knows them
+        return tl::unexpected<Error>(weights.error());
+    }
+    source.weights = std::move(*weights);
+    source.importance = in_order(std::span(options.importance), order);
+    source.stitches = in_order(stitches, order);
+    const auto place = inverse_order(order);
+    for (std::uint32_t& vertex : source.stitches)
+    {
+        vertex = place[vertex];
+    }
+    source.locked = lock_copies(source.stitches);
+    source.grid = make_grid(ordered.positions, options.position_bits);
+    source.quantised = quantize(source.grid, ordered);
+    source.exact.resize(ordered.positions.size());
+    std::ranges::transform(ordered.positions, source.exact.begin(), [&](const auto& point) {
+        return (point - source.grid.origin) * (1.0 / source.grid.cell);
+    });
+    return source;
 }
 
 /// Ties the share done to the name of its stage.
@@ -255,31 +298,27 @@ Result<EncodedMesh> encode_mesh(
     const auto begin = Clock::now();
     auto start = begin;
     EncodedMesh result;
-    auto weights = find_weights(mesh, options);
-    VSPLIT_TRY(weights);
+    auto source = prepare(mesh, stitches, options);
+    VSPLIT_TRY(source);
     result.seconds.metric = lap(start);
 
-    const QuantizationGrid grid = make_grid(mesh.positions, options.position_bits);
-    const GridMesh quantised = quantize(grid, mesh);
-    std::vector<Vector3> exact(mesh.positions.size());
-    std::ranges::transform(mesh.positions, exact.begin(), [&](const auto& point) {
-        return (point - grid.origin) * (1.0 / grid.cell);
-    });
-    const auto locked = lock_copies(stitches);
-    Sequence sequence = make_sequence(mesh, exact, locked, std::move(*weights), options, progress);
+    Sequence sequence = make_sequence(*source, options, progress);
     result.seconds.collapse = lap(start);
 
     order_levels(sequence);
     auto errors = measure_levels(
-        {.exact = exact, .mesh = &quantised, .locked = locked, .bits = grid.bits},
+        {.exact = source->exact,
+         .mesh = &source->quantised,
+         .locked = source->locked,
+         .bits = options.position_bits},
         sequence.levels,
-        options.importance,
+        source->importance,
         options.threads,
         stage_progress(progress, "measure")
     );
     result.seconds.distance = lap(start);
 
-    auto plan = make_plan(sequence, grid, quantised, errors, stitches);
+    auto plan = make_plan(sequence, *source, errors);
     plan.training = options.training;
     auto file = codec::encode_stream(plan, stage_progress(progress, "code"));
     VSPLIT_TRY(file);

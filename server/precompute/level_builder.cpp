@@ -4,6 +4,7 @@
 #include "precompute/level_builder.h"
 
 #include "core/portable_log.h"
+#include "precompute/parallel_ranges.h"
 
 #include <algorithm>
 #include <cmath>
@@ -71,24 +72,39 @@ LevelBuilder::LevelBuilder(
     CollapseMesh& mesh,
     CollapseCost& cost,
     std::span<const Vector3> positions,
-    std::span<const std::uint8_t> locked
+    std::span<const std::uint8_t> locked,
+    unsigned threads
 )
     : mesh_(mesh),
       cost_(cost),
       positions_(positions),
       locked_(locked),
+      threads_(threads),
       alive_(mesh.vertices()),
       first_(positions.size(), 0),
       best_key_(positions.size(), kSettled)
 {
 }
 
-void LevelBuilder::collect_vertex(std::uint32_t vertex, const LevelStyle& style)
+bool LevelBuilder::may_go(std::uint32_t vertex) const
 {
     constexpr std::uint32_t kMostNeighbours = codec::kMaxWedge + 2;
+    const std::uint32_t valence = mesh_.valence(vertex);
+    return valence >= 3 && valence <= kMostNeighbours && (locked_.empty() || locked_[vertex] == 0);
+}
+
+std::span<LevelBuilder::Candidate> LevelBuilder::candidates_of(std::uint32_t vertex)
+{
+    // Whoever is asked for has the neighbours that it had when the level began: see best_key_.
+    return std::span(candidates_)
+        .subspan(first_[vertex], may_go(vertex) ? mesh_.valence(vertex) : 0);
+}
+
+void LevelBuilder::collect_vertex(std::uint32_t vertex, const LevelStyle& style)
+{
+    const std::span<Candidate> candidates = candidates_of(vertex);
     OneRing ring;
-    if (mesh_.valence(vertex) > kMostNeighbours || mesh_.valence(vertex) < 3 ||
-        (!locked_.empty() && locked_[vertex] != 0) || !mesh_.ring(vertex, ring))
+    if (candidates.empty() || !mesh_.ring(vertex, ring))
     {
         return;
     }
@@ -102,6 +118,7 @@ void LevelBuilder::collect_vertex(std::uint32_t vertex, const LevelStyle& style)
     }
     for (std::size_t kept = 0; kept < ring.size; ++kept)
     {
+        candidates[kept] = {};
         // A boundary vertex moves only along the boundary.
         if (ring.boundary && kept != 0 && kept + 1 != ring.size)
         {
@@ -115,37 +132,44 @@ void LevelBuilder::collect_vertex(std::uint32_t vertex, const LevelStyle& style)
         const Vector3 off = star.offset[kept] - star.mean;
         const double key = style.shape * (1.0 - quality) + style.centring * off_centre +
                            style.apex * portable_log((dot(off, off) + 1.0) / (nearest + 1.0));
-        candidates_.push_back({
-            vertex,
-            static_cast<std::uint32_t>(kept),
-            static_cast<float>(cost_.price(vertex, ring, star, kept)),
-            static_cast<float>(key),
-        });
+        candidates[kept] = {
+            static_cast<float>(cost_.price(vertex, ring, star, kept)), static_cast<float>(key)};
     }
 }
 
 void LevelBuilder::collect(const LevelStyle& style)
 {
-    candidates_.clear();
+    std::size_t count = 0;
     for (const std::uint32_t vertex : alive_)
     {
-        first_[vertex] = static_cast<std::uint32_t>(candidates_.size());
+        first_[vertex] = static_cast<std::uint32_t>(count);
+        count += may_go(vertex) ? mesh_.valence(vertex) : 0;
         best_key_[vertex] = kSettled;
-        collect_vertex(vertex, style);
     }
+    candidates_.resize(std::max(candidates_.size(), count));
+    const auto alive = static_cast<std::uint32_t>(alive_.size());
+    parallel_ranges(alive, threads_, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t i = begin; i < end; ++i)
+        {
+            collect_vertex(alive_[i], style);
+        }
+    });
 }
 
-void LevelBuilder::rank(const LevelStyle& style)
+LevelBuilder::Prices LevelBuilder::typical_prices(const LevelStyle& style)
 {
     std::vector<float> best_prices;
     std::vector<float> unmarked_prices;
-    for (std::size_t i = 0; i < candidates_.size();)
+    for (const std::uint32_t vertex : alive_)
     {
-        const std::uint32_t vertex = candidates_[i].removed;
         float best = kSettled;
-        for (; i < candidates_.size() && candidates_[i].removed == vertex; ++i)
+        for (const Candidate& candidate : candidates_of(vertex))
         {
-            best = std::min(best, candidates_[i].price);
+            best = std::min(best, candidate.price);
+        }
+        if (best == kSettled)
+        {
+            continue;
         }
         best_prices.push_back(best);
         if (cost_.has_marks() && !cost_.is_marked(vertex))
@@ -155,27 +179,37 @@ void LevelBuilder::rank(const LevelStyle& style)
     }
     if (best_prices.empty())
     {
-        return;
+        return {};
     }
     // What may go at all is decided among the unmarked ones, or a large region would lift its own cap.
     std::vector<float>& prices =
         unmarked_prices.size() > best_prices.size() / 4 ? unmarked_prices : best_prices;
-    const double median = std::max(1e-30, static_cast<double>(quantile(prices, 0.5)));
-    const float most =
-        style.cheapest_share < 1.0 ? quantile(prices, style.cheapest_share) : kSettled;
+    return {
+        .median = std::max(1e-30, static_cast<double>(quantile(prices, 0.5))),
+        .most = style.cheapest_share < 1.0 ? quantile(prices, style.cheapest_share) : kSettled,
+    };
+}
+
+void LevelBuilder::rank(const LevelStyle& style)
+{
+    const Prices typical = typical_prices(style);
+    const auto alive = static_cast<std::uint32_t>(alive_.size());
+    parallel_ranges(alive, threads_, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t i = begin; i < end; ++i)
+        {
+            float best = kSettled;
+            for (auto& [price, key] : candidates_of(alive_[i]))
+            {
+                const double ratio = static_cast<double>(price) / typical.median;
+                key = price > typical.most || price == kSettled
+                          ? kSettled
+                          : key + static_cast<float>(style.cost_weight * portable_log(1.0 + ratio));
+                best = std::min(best, key);
+            }
+            best_key_[alive_[i]] = best;
+        }
+    });
     heap_.clear();
-    for (Candidate& candidate : candidates_)
-    {
-        candidate.key =
-            candidate.price > most
-                ? kSettled
-                : candidate.key +
-                      static_cast<float>(
-                          style.cost_weight *
-                          portable_log(1.0 + static_cast<double>(candidate.price) / median)
-                      );
-        best_key_[candidate.removed] = std::min(best_key_[candidate.removed], candidate.key);
-    }
     for (const std::uint32_t vertex : alive_)
     {
         if (best_key_[vertex] < kSettled)
@@ -217,25 +251,21 @@ bool LevelBuilder::try_vertex(
     {
         return false;
     }
-    std::array<const Candidate*, OneRing::kMost> choices{};
+    std::array<std::pair<float, std::size_t>, OneRing::kMost> choices{};
     std::size_t count = 0;
-    for (std::size_t i = first_[vertex]; i < candidates_.size() && candidates_[i].removed == vertex;
-         ++i)
+    const std::span<const Candidate> candidates = candidates_of(vertex);
+    for (std::size_t kept = 0; kept < candidates.size(); ++kept)
     {
-        if (candidates_[i].key < kSettled)
+        if (candidates[kept].key < kSettled)
         {
-            choices[count++] = &candidates_[i];
+            choices[count++] = {candidates[kept].key, kept};
         }
     }
     // Ties go to the first neighbour, so that the result never depends on the sorting.
-    std::sort(
-        choices.begin(),
-        choices.begin() + static_cast<std::ptrdiff_t>(count),
-        [](auto* a, auto* b) { return a->key != b->key ? a->key < b->key : a->kept < b->kept; }
-    );
+    std::sort(choices.begin(), choices.begin() + static_cast<std::ptrdiff_t>(count));
     for (std::size_t i = 0; i < count; ++i)
     {
-        const std::size_t kept = choices[i]->kept;
+        const std::size_t kept = choices[i].second;
         if (!mesh_.can_collapse(vertex, ring, kept, kValenceLimit))
         {
             continue;

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -33,12 +34,13 @@ class LevelBuilder
 {
 public:
     /// `positions`: V points in grid units; `locked`: V flags, vertices never removed, or empty.
-    /// `mesh` and `cost` must outlive the builder.
+    /// `threads`: at least 1; the levels do not depend on it. `mesh` and `cost` must outlive the builder.
     LevelBuilder(
         CollapseMesh& mesh,
         CollapseCost& cost,
         std::span<const Vector3> positions,
-        std::span<const std::uint8_t> locked
+        std::span<const std::uint8_t> locked,
+        unsigned threads = 1
     );
 
     /// Chooses and carries out the collapses of the next coarser level. `most`: at most so many.
@@ -53,15 +55,23 @@ public:
     [[nodiscard]] std::size_t vertex_count() const { return alive_.size(); }
 
 private:
-    /// A collapse that is geometrically sound.
+    /// What folding into one neighbour costs; infinite when that is not geometrically sound.
     struct Candidate
     {
-        std::uint32_t removed = 0;
-        std::uint32_t kept = 0;  ///< Number of the neighbour in the ring.
-        float price = 0.0F;
-        float key = 0.0F;
+        float price = std::numeric_limits<float>::infinity();
+        float key = std::numeric_limits<float>::infinity();
     };
 
+    /// Of the level's cheapest candidates, one a vertex.
+    struct Prices
+    {
+        double median = 1.0;
+        float most = std::numeric_limits<float>::infinity();  ///< Dearer ones may not go.
+    };
+
+    [[nodiscard]] bool may_go(std::uint32_t vertex) const;
+    [[nodiscard]] std::span<Candidate> candidates_of(std::uint32_t vertex);
+    [[nodiscard]] Prices typical_prices(const LevelStyle& style);
     void collect(const LevelStyle& style);
     void collect_vertex(std::uint32_t vertex, const LevelStyle& style);
     void rank(const LevelStyle& style);
@@ -74,8 +84,9 @@ private:
     CollapseCost& cost_;
     std::span<const Vector3> positions_;
     std::span<const std::uint8_t> locked_;
+    unsigned threads_;
     std::vector<std::uint32_t> alive_;
-    std::vector<Candidate> candidates_;  ///< Grouped by removed vertex.
+    std::vector<Candidate> candidates_;  ///< By vertex that may go, one for each of its neighbours.
     std::vector<std::uint32_t> first_;   ///< By vertex its first candidate.
     /// By vertex the least key; infinite when it is removed, shares a face with a removed one's star,
     /// or cannot go.
