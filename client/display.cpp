@@ -24,7 +24,7 @@ Result<void> warm_up(Renderer& renderer)
     step.kind = codec::StepKind::Chunk;
     step.vertices = 3;
     step.faces = 1;
-    step.triangles = triangle;
+    step.triangles = std::span<const codec::TriangleUpdate>(triangle);
     GpuBuffers buffers(1.0);
     buffers.apply(step, [&](std::uint32_t first, std::uint32_t count, std::span<float> out) {
         std::copy_n(kPoints.begin() + 3 * first, 3 * count, out.begin());

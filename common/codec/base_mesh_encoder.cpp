@@ -215,7 +215,7 @@ Result<RefinementMesh> linked(const GridMesh& mesh)
     constexpr std::int32_t kAnyIndex = 1 << 24;
     RefinementMesh result;
     const auto vertices = static_cast<std::uint32_t>(mesh.positions.size());
-    result.reserve(vertices, static_cast<std::uint32_t>(mesh.triangles.size()), 0);
+    result.reserve(vertices, static_cast<std::uint32_t>(mesh.triangles.size()));
     VSPLIT_TRY(result.set_base(mesh, kAnyIndex));
     return result;
 }

@@ -113,11 +113,9 @@ private:
     {
         const Split* planned = nullptr;
         Split split;
-        split.seed = seed;
         if constexpr (Coder::kEncodes)
         {
-            split.source = plan_->split_of_face[static_cast<std::size_t>(seed)];
-            planned = &plan_->splits[split.source];
+            planned = &plan_->splits[plan_->split_of_face[static_cast<std::size_t>(seed)]];
         }
         const Corner kept = code_kept(seed, view, planned);
         Wedge wedge{.first = kept, .last = kept, .length = 1, .kept = vertex(kept)};
@@ -125,6 +123,7 @@ private:
         grow(wedge, view.local_log, seed, planned);
         split.first = wedge.first;
         split.wedge = static_cast<std::uint8_t>(wedge.length);
+        split.before = static_cast<std::uint8_t>(wedge.before);
         split.kind = code_boundary(wedge, planned);
         update_valences(wedge, split.kind);
         return split;
@@ -217,6 +216,7 @@ private:
         Corner first = -1;
         Corner last = -1;
         std::int32_t length = 1;
+        std::int32_t before = 0;  ///< Faces to the right of the seed.
         std::uint32_t kept = 0;
         Vector3 sum{};  ///< Sum of the ring's other vertices, relative to the kept one.
     };
@@ -269,6 +269,7 @@ private:
             }
             ++grown;
             ++wedge.length;
+            wedge.before += kRight ? 1 : 0;
             wedge.sum = grown_sum;
             faces_[face_of(across)].state = FaceState::Taken;
             (kRight ? wedge.first : wedge.last) =

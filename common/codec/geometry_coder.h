@@ -8,6 +8,7 @@
 #include "codec/float_log.h"
 #include "codec/ring_frames.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -59,9 +60,8 @@ template <typename Coder>
     const auto& [expected, normal, height, radius] = prediction;
     const std::array<float, 3> slope{
         std::fabs(normal[0]), std::fabs(normal[1]), std::fabs(normal[2])};
-    const std::int32_t steepest = choose(
-        (slope[0] >= slope[1]) & (slope[0] >= slope[2]), 0, choose(slope[1] >= slope[2], 1, 2)
-    );
+    const std::int32_t steepest =
+        choose(slope[0] >= std::max(slope[1], slope[2]), 0, choose(slope[1] >= slope[2], 1, 2));
     const auto last = static_cast<std::size_t>(steepest);
     const auto first = static_cast<std::size_t>((steepest + 1) & mask_if(steepest != 2));
     const std::size_t second = 3 - first - last;

@@ -7,6 +7,7 @@
 #include "core/assert.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace vsplit::codec {
 namespace {
@@ -25,14 +26,10 @@ std::uint8_t edge_log(const Vector3& edge)
 
 }  // namespace
 
-void RefinementMesh::reserve(
-    std::uint32_t vertices, std::uint32_t faces, std::uint32_t largest_batch
-)
+void RefinementMesh::reserve(std::uint32_t vertices, std::uint32_t faces)
 {
     storage_.assign(std::size_t{faces} + 1, Face{});
     storage_.front().state = FaceState::Boundary;
-    added_.assign(largest_batch, Face{});
-    places_.assign(faces, 0);
     points_.assign(vertices, Point{});
     valences_.assign(vertices, 0);
 }
@@ -45,6 +42,7 @@ Result<void> RefinementMesh::set_base(const GridMesh& base, std::int32_t max_ind
         vertex_count_ = 0;
         face_count_ = 0;
     }
+    batch_start_ = face_count_;
     return done;
 }
 
@@ -162,6 +160,7 @@ Result<void> RefinementMesh::check_fans()
 
 void RefinementMesh::start_batch()
 {
+    finish_batch();
     for (std::uint32_t f = 0; f < face_count_; ++f)
     {
         Face& face = faces()[f];
@@ -171,7 +170,6 @@ void RefinementMesh::start_batch()
         face.edge_log = {edge_log(c - b), edge_log(a - c), edge_log(b - a)};
         face.state = FaceState::Free;
     }
-    batch_start_ = face_count_;
 }
 
 void RefinementMesh::link(Corner a, Corner b)
@@ -188,14 +186,15 @@ void RefinementMesh::link(Corner a, Corner b)
 
 std::int32_t RefinementMesh::add_face(std::array<std::uint32_t, 3> vertices, const Face& like)
 {
-    const auto index = static_cast<std::int32_t>(face_count_++);
+    const std::uint32_t slot = face_count_++;
+    const auto index = static_cast<std::int32_t>(face_capacity() - added_count());
     // Neighbours that are still free read the edge lengths of this face; those of the face it grew
     // from serve, as long as both sides do the same.
     faces()[index] = Face{
         .vertex = vertices,
         .edge_log = like.edge_log,
         .state = FaceState::Taken,
-        .slot = static_cast<std::uint32_t>(index),
+        .slot = slot,
     };
     return index * 4;
 }
@@ -222,83 +221,124 @@ void RefinementMesh::split_left(
     link(face + 1, outer);
     if (split.kind == SplitKind::Interior)
     {
-        link(face + 2, face - 4 + 1);
+        link(face + 2, face + 4 + 1);  // the right face was added just before
     }
 }
 
-void RefinementMesh::apply(std::span<const Split> splits, std::vector<TriangleUpdate>* updates)
+void RefinementMesh::apply(std::span<const Split> splits)
 {
     for (const Split& split : splits)
     {
-        const std::uint32_t removed = vertex_count_++;
-        const std::uint32_t kept = vertex(split.first);
-        const std::uint32_t first_added = face_count_;
-        Corner corner = split.first;
-        Corner last = corner;
-        for (int i = 0; i < split.wedge; ++i)
-        {
-            last = corner;
-            Face& face = faces()[face_of(corner)];
-            face.vertex[static_cast<std::size_t>(corner & 3)] = removed;
-            if (updates != nullptr)
-            {
-                updates->push_back({face.slot, face.vertex});
-            }
-            const Corner across = opposite(next_corner(corner));
-            corner = i + 1 < split.wedge ? next_corner(across) : corner;
-        }
-        if (split.kind != SplitKind::BoundaryRight)
-        {
-            split_right(split, kept, removed);
-        }
-        if (split.kind != SplitKind::BoundaryLeft)
-        {
-            split_left(split, last, kept, removed);
-        }
-        for (std::uint32_t f = first_added; updates != nullptr && f < face_count_; ++f)
-        {
-            updates->push_back({faces()[f].slot, faces()[f].vertex});
-        }
-        valences_[removed] = static_cast<std::uint16_t>(split.wedge + 2);
-        faces()[split.seed].state =
-            split.kind == SplitKind::Interior ? FaceState::SeedOfTwo : FaceState::SeedOfOne;
+        apply(split);
     }
+}
+
+void RefinementMesh::apply(const Split& split)
+{
+    const std::uint32_t removed = vertex_count_++;
+    const std::uint32_t kept = vertex(split.first);
+    Corner corner = split.first;
+    Corner last = corner;
+    for (int i = 0; i < split.wedge; ++i)
+    {
+        last = corner;
+        Face& face = faces()[face_of(corner)];
+        face.vertex[static_cast<std::size_t>(corner & 3)] = removed;
+        if (i == split.before)
+        {
+            face.state =
+                split.kind == SplitKind::Interior ? FaceState::SeedOfTwo : FaceState::SeedOfOne;
+        }
+        const Corner across = opposite(next_corner(corner));
+        corner = i + 1 < split.wedge ? next_corner(across) : corner;
+    }
+    if (split.kind != SplitKind::BoundaryRight)
+    {
+        split_right(split, kept, removed);
+    }
+    if (split.kind != SplitKind::BoundaryLeft)
+    {
+        split_left(split, last, kept, removed);
+    }
+    valences_[removed] = static_cast<std::uint16_t>(split.wedge + 2);
 }
 
 void RefinementMesh::finish_batch()
 {
-    const std::uint32_t added = face_count_ - batch_start_;
-    std::copy_n(faces() + batch_start_, added, added_.begin());
-    std::int32_t place = 0;
-    std::uint32_t next_added = batch_start_;
-    const auto children = [](FaceState state) {
-        return state == FaceState::SeedOfTwo ? 2U : state == FaceState::SeedOfOne ? 1U : 0U;
-    };
-    for (std::uint32_t f = 0; f < batch_start_; ++f)
+    if (added_count() == 0)
     {
-        places_[f] = place++;
-        for (std::uint32_t i = children(faces()[f].state); i > 0; --i)
-        {
-            places_[next_added++] = place++;
-        }
+        return;
     }
-    // Faces only move towards the end, so moving the last one first overwrites nothing.
-    std::uint32_t from = added;
-    for (std::uint32_t f = batch_start_; f-- > 0;)
-    {
-        const std::uint32_t count = children(faces()[f].state);
-        Face* const target = faces() + places_[f];
-        from -= count;
-        *target = faces()[f];
-        std::copy_n(added_.begin() + from, count, target + 1);
-    }
-    for (std::uint32_t f = 0; f < face_count_; ++f)
-    {
-        for (Corner& corner : faces()[f].opposite)
+    assign_places();
+    const std::uint32_t first_added = face_capacity() - added_count();
+    const auto renumber = [this](Face& face) {
+        for (Corner& corner : face.opposite)
         {
             corner = corner < 0
                          ? -1
-                         : places_[static_cast<std::size_t>(face_of(corner))] * 4 + (corner & 3);
+                         : static_cast<Corner>(faces()[face_of(corner)].place()) * 4 + (corner & 3);
+        }
+    };
+    std::for_each(faces(), faces() + batch_start_, renumber);
+    std::for_each(faces() + first_added, faces() + face_capacity(), renumber);
+    if (face_count_ <= first_added)
+    {
+        sort_in_added();
+    }
+    else
+    {
+        follow_places();
+    }
+    batch_start_ = face_count_;
+}
+
+/// Tells every face where it goes: seeds are met in the order in which their splits added faces.
+void RefinementMesh::assign_places()
+{
+    std::uint32_t place = 0;
+    Face* added = faces() + face_capacity();
+    for (Face* face = faces(); face != faces() + batch_start_; ++face)
+    {
+        const FaceState state = face->state;
+        face->set_place(place++);
+        if (state >= FaceState::SeedOfOne)
+        {
+            (--added)->set_place(place++);
+        }
+        if (state == FaceState::SeedOfTwo)
+        {
+            (--added)->set_place(place++);
+        }
+    }
+}
+
+/// Moves every face to its place when the added ones stand behind all places. Faces from before only
+/// move towards the end, so moving the last one first overwrites nothing.
+void RefinementMesh::sort_in_added()
+{
+    const Face* added = faces() + face_capacity() - added_count();
+    std::uint32_t target = face_count_;
+    for (std::uint32_t f = batch_start_; f < target;)
+    {
+        --f;
+        while (target > faces()[f].place() + 1)
+        {
+            faces()[--target] = *added++;
+        }
+        faces()[--target] = faces()[f];
+    }
+}
+
+/// Moves every face to its place along the cycles of the permutation: slower, but needs no room.
+void RefinementMesh::follow_places()
+{
+    const Face* const added = faces() + face_capacity() - added_count();
+    std::copy(added, added + added_count(), faces() + batch_start_);
+    for (std::uint32_t f = 0; f < face_count_; ++f)
+    {
+        while (faces()[f].place() != f)
+        {
+            std::swap(faces()[f], faces()[faces()[f].place()]);
         }
     }
 }

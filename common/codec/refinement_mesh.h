@@ -1,6 +1,6 @@
 #pragma once
 
-#include "codec/stream_decoder.h"
+#include "codec/triangle_updates.h"
 #include "core/result.h"
 #include "mesh/indexed_mesh.h"
 
@@ -53,16 +53,34 @@ struct alignas(32) Face
     std::array<std::uint8_t, 3> edge_log{};  ///< 8 log2(1 + squared length) of the opposite edge.
     FaceState state = FaceState::Free;
     std::uint32_t slot = 0;  ///< Its place in the triangle list that callers see.
+
+    /// Between two batches: where the face goes in the new order, kept where the edge logs and the
+    /// state are while a batch is coded.
+    [[nodiscard]] std::uint32_t place() const
+    {
+        return edge_log[0] | static_cast<std::uint32_t>(edge_log[1]) << 8 |
+               static_cast<std::uint32_t>(edge_log[2]) << 16 |
+               static_cast<std::uint32_t>(state) << 24;
+    }
+
+    /// Sets place(); edge logs and state are lost.
+    void set_place(std::uint32_t place)
+    {
+        edge_log = {
+            static_cast<std::uint8_t>(place),
+            static_cast<std::uint8_t>(place >> 8),
+            static_cast<std::uint8_t>(place >> 16)};
+        state = static_cast<FaceState>(place >> 24);
+    }
 };
 
 /// A grid position in units of 2^shift cells; the coordinates are integers held in floats, exact to
 /// 2^24.
-struct alignas(16) Point
+struct Point
 {
     float x = 0.0F;
     float y = 0.0F;
     float z = 0.0F;
-    float unused = 0.0F;
 };
 
 /// How the wedge of a split touches the boundary.
@@ -87,10 +105,9 @@ enum class SplitKind : std::uint8_t
 /// Glossary (Hoppe 1996 / OpenMesh): kept = v1, removed = v0, left = vl, right = vr.
 struct Split
 {
-    Corner first = -1;         ///< Corner at the kept vertex of the wedge's first (rightmost) face.
-    std::int32_t seed = -1;    ///< The face that the traversal asked.
-    std::uint32_t source = 0;  ///< Encoder only: which planned split this is.
-    std::uint8_t wedge = 0;    ///< Faces in the wedge, 1 .. kMaxWedge.
+    Corner first = -1;        ///< Corner at the kept vertex of the wedge's first (rightmost) face.
+    std::uint8_t wedge = 0;   ///< Faces in the wedge, 1 .. kMaxWedge.
+    std::uint8_t before = 0;  ///< Faces of the wedge before its seed, the face that was asked.
     SplitKind kind = SplitKind::Interior;
 };
 
@@ -101,13 +118,14 @@ inline constexpr int kMaxWedge = 4;
 inline constexpr std::uint16_t kManyNeighbours = 65535;
 
 /// The mesh while it is refined: faces with neighbours in an order that keeps neighbours close in
-/// memory, positions on the current grid, valences. All memory is reserved up front. Shared by decoder
-/// and encoder. Not thread safe.
+/// memory, positions on the current grid, valences. All memory is reserved up front, and nothing but the
+/// final mesh needs any: while a batch is coded, its new faces stand at the end of the reserved room, the
+/// newest first, and the next batch's start sorts them in. Shared by decoder and encoder. Not thread safe.
 class RefinementMesh
 {
 public:
-    /// Reserves room for the final mesh. `largest_batch`: most faces that one batch adds.
-    void reserve(std::uint32_t vertices, std::uint32_t faces, std::uint32_t largest_batch);
+    /// Reserves room for the final mesh.
+    void reserve(std::uint32_t vertices, std::uint32_t faces);
 
     /// Takes over a base mesh whose positions are in units of 2^shift cells.
     /// `max_index`: largest coordinate on that grid. Errors: BadChunk when an index or a coordinate is
@@ -116,17 +134,23 @@ public:
     /// Precondition: it fits the reservation. Safe on untrusted input.
     [[nodiscard]] Result<void> set_base(const GridMesh& base, std::int32_t max_index);
 
-    /// Prepares a batch: measures every edge and frees every face.
+    /// Ends the batch before, if there was one: its new faces move beside the face whose wedge they came
+    /// from, so that neighbours stay close in memory; slots do not change. Then prepares the next one:
+    /// measures every edge and frees every face. Faces 0 .. face_count() - 1 are in order then.
     void start_batch();
 
-    /// Carries out the splits of one chunk; the removed vertices' positions must be in place at
-    /// vertex_count() onwards. Changed triangles are appended to `updates` when given.
+    /// Carries out splits of the batch; the removed vertices' positions must be in place at
+    /// vertex_count() onwards.
     /// Precondition: room for the new faces; splits as the connectivity coder made them.
-    void apply(std::span<const Split> splits, std::vector<TriangleUpdate>* updates);
+    void apply(std::span<const Split> splits);
 
-    /// Ends a batch: moves new faces beside the face whose wedge they came from, so that neighbours
-    /// stay close in memory. Slots do not change.
-    void finish_batch();
+    /// All faces: those from before the batch, then those that it added, the newest first.
+    [[nodiscard]] std::array<std::span<const Face>, 2> face_ranges() const
+    {
+        return {
+            std::span(faces(), batch_start_),
+            std::span(faces() + face_capacity() - added_count(), added_count())};
+    }
 
     /// Number of faces that a chunk's splits add.
     [[nodiscard]] static std::uint32_t added_faces(std::span<const Split> splits);
@@ -142,6 +166,9 @@ public:
     {
         return static_cast<std::uint32_t>(storage_.size() - 1);
     }
+
+    /// Faces that the batch added; they have the indices below face_capacity().
+    [[nodiscard]] std::uint32_t added_count() const { return face_count_ - batch_start_; }
 
     /// Faces by index; index -1 is valid and has state Boundary.
     [[nodiscard]] Face* faces() { return storage_.data() + 1; }
@@ -172,6 +199,11 @@ public:
 
 private:
     void link(Corner a, Corner b);
+    void apply(const Split& split);
+    void finish_batch();
+    void assign_places();
+    void sort_in_added();
+    void follow_places();
     [[nodiscard]] Result<void> take_base(const GridMesh& base, std::int32_t max_index);
     [[nodiscard]] Result<void> link_base();
     [[nodiscard]] Result<void> check_fans();
@@ -180,8 +212,6 @@ private:
     void split_left(const Split& split, Corner last, std::uint32_t kept, std::uint32_t removed);
 
     std::vector<Face> storage_;  ///< One sentinel, then the faces.
-    std::vector<Face> added_;    ///< Room for the faces of the largest batch.
-    std::vector<std::int32_t> places_;
     std::vector<Point> points_;
     std::vector<std::uint16_t> valences_;
     std::uint32_t vertex_count_ = 0;

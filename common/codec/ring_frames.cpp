@@ -102,6 +102,30 @@ Float4 tangent_plane_offset(const RingSums& sums, const BasicFrame<Float4>& fram
     return where(good, clamp_to<Float4>(sums.outer_plane / along, frame.radius));
 }
 
+/// Derives all but the centre. `kept`: the kept vertex, relative to the centre.
+void finish_frame(
+    BasicFrame<Float4>& frame, const RingSums& sums, Float4 share, const Vectors4& kept
+)
+{
+    const Float4 zero{};
+    const Float4 area = dot(sums.area, sums.area);
+    frame.normal = choose(
+        area > 0.0F,
+        sums.area * (1.0F / square_root(area)),
+        Vectors4{zero, zero, lanes::splat(1.0F)}
+    );
+    frame.radius = lanes::max(square_root(sums.square * share), lanes::splat(0.5F));
+    const Vectors4 weighted =
+        choose(sums.length > 0.0F, sums.weighted * (0.5F / sums.length), sums.weighted);
+    frame.heights = {
+        tangent_plane_offset(sums, frame),
+        dot(kept, frame.normal),
+        dot(weighted, frame.normal),
+    };
+    frame.to_kept = kept - frame.normal * frame.heights[1];
+    frame.to_mean = weighted - frame.normal * frame.heights[2];
+}
+
 }  // namespace
 
 void RingFrames::set_outer(
@@ -190,23 +214,7 @@ void RingFrames::make_frames(std::size_t group)
         sums.outer_plane =
             boundary ? sums.outer_plane - dot(sums.outer_area, middle) : sums.outer_plane;
     }
-    const Float4 zero{};
-    const Float4 area = dot(sums.area, sums.area);
-    frame.normal = choose(
-        area > 0.0F,
-        sums.area * (1.0F / square_root(area)),
-        Vectors4{zero, zero, lanes::splat(1.0F)}
-    );
-    frame.radius = lanes::max(square_root(sums.square * share), lanes::splat(0.5F));
-    const Vectors4 weighted =
-        choose(sums.length > 0.0F, sums.weighted * (0.5F / sums.length), sums.weighted);
-    frame.heights = {
-        tangent_plane_offset(sums, frame),
-        dot(ring[0], frame.normal),
-        dot(weighted, frame.normal),
-    };
-    frame.to_kept = ring[0] - frame.normal * frame.heights[1];
-    frame.to_mean = weighted - frame.normal * frame.heights[2];
+    finish_frame(frame, sums, share, ring[0]);
     frames_[group] = frame;
 }
 

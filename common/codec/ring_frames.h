@@ -29,6 +29,7 @@ inline constexpr PredictionWeights kInitialWeights{26, 6, 3, 11, 16};
 template <typename Scalar>
 struct BasicFrame
 {
+    /// One vector for each lane of Scalar.
     using Vector = BasicVector<Scalar>;
     Vector centre;   ///< Mean of the ring; on a boundary the mid-point of its two neighbours there.
     Vector normal;   ///< Unit normal of the ring's polygon.

@@ -3,6 +3,7 @@
 #include "codec/base_mesh_decoder.h"
 #include "codec/batch_coder.h"
 #include "codec/entropy_coder.h"
+#include "codec/split_updates.h"
 #include "codec/stitch_coder.h"
 #include "core/assert.h"
 
@@ -122,26 +123,19 @@ private:
 
     void reserve(const StreamInfo& info)
     {
-        std::uint32_t largest_level = 0;
         std::uint32_t largest_batch = 0;
         std::uint32_t largest_chunk = 0;
-        std::uint32_t level_start = info.chunks.front().faces;
         std::uint32_t vertices = info.chunks.front().vertices;
         for (const ChunkInfo& chunk : info.chunks)
         {
             largest_chunk = std::max(largest_chunk, chunk.bytes);
-            largest_level = std::max(largest_level, chunk.faces - level_start);
             largest_batch = std::max(largest_batch, chunk.vertices - vertices);
-            level_start = chunk.ends_level ? chunk.faces : level_start;
             vertices = chunk.vertices;
         }
         state_.bits = info.grid.bits;
-        state_.mesh.reserve(info.vertex_count, info.face_count, largest_level);
+        state_.mesh.reserve(info.vertex_count, info.face_count);
         state_.splits.reserve(largest_batch);
         buffer_.reserve(largest_chunk);
-        updates_.reserve(std::max<std::size_t>(
-            info.chunks.front().faces, std::size_t{largest_batch} * kMostUpdates
-        ));
     }
 
     Result<Step> decode_chunk()
@@ -151,7 +145,7 @@ private:
         VSPLIT_TRY(contents);
         Step step = current(StepKind::SkippedChunk);
         step.chunk_bytes = chunk.bytes;
-        updates_.clear();
+        updates_.show({});
         const auto done = decode_contents(chunk, *contents, step);
         if (!done)
         {
@@ -159,7 +153,7 @@ private:
         }
         step.vertices = state_.mesh.vertex_count();
         step.faces = state_.mesh.face_count();
-        step.triangles = updates_;
+        step.triangles = TriangleUpdates(updates_);
         if (step.level_complete)
         {
             level_ = next_ == 0 ? 0 : level_ + 1;
@@ -199,10 +193,7 @@ private:
         const auto base = decode_base_mesh(bytes, chunk.vertices, chunk.faces, max_index);
         VSPLIT_TRY(base);
         VSPLIT_TRY(state_.mesh.set_base(*base, state_.max_index()));
-        for (std::uint32_t f = 0; f < chunk.faces; ++f)
-        {
-            updates_.push_back({f, base->triangles[f]});
-        }
+        updates_.show_all();
         step.first_new_vertex = 0;
         step.first_moved_vertex = 0;
         return {};
@@ -221,10 +212,11 @@ private:
             start_batch(state_);
         }
         step.first_moved_vertex = state_.shift == shift ? step.first_new_vertex : 0;
+        // What earlier batches changed is not kept: there are so many changes that all may be told.
+        const bool several = batches > 1;
         for (; batches > 1; --batches)
         {
             VSPLIT_TRY(decode_splits(bits, chunk, bits.raw(0, kSplitCountBits)));
-            state_.mesh.finish_batch();
             start_batch(state_);
         }
         VSPLIT_TRY(decode_splits(bits, chunk, chunk.vertices - state_.mesh.vertex_count()));
@@ -233,9 +225,9 @@ private:
         {
             return fail(ErrorCode::BadChunk, "a chunk adds other faces than the index says");
         }
-        if (chunk.ends_level)
+        if (several)
         {
-            state_.mesh.finish_batch();
+            updates_.show_all();
         }
         return {};
     }
@@ -254,7 +246,8 @@ private:
         {
             return fail(ErrorCode::BadChunk, "a chunk adds other faces than the index says");
         }
-        state_.mesh.apply(state_.splits, &updates_);
+        updates_.show(state_.splits);
+        state_.mesh.apply(state_.splits);
         return {};
     }
 
@@ -273,11 +266,9 @@ private:
         return bits.finish();
     }
 
-    static constexpr std::size_t kMostUpdates = kMaxWedge + 2;
-
     DecodeLimits limits_;
     std::vector<std::byte> buffer_;
-    std::vector<TriangleUpdate> updates_;
+    SplitUpdates updates_{state_.mesh};
     std::optional<Error> error_;
     std::size_t next_ = 0;
 
@@ -377,10 +368,12 @@ std::array<std::int32_t, 3> StreamDecoder::grid_position(std::uint32_t vertex) c
 void StreamDecoder::write_triangles(std::span<Triangle> out) const
 {
     VSPLIT_ASSERT(out.size() >= faces());
-    for (std::uint32_t f = 0; f < faces(); ++f)
+    for (const auto range : impl_->state_.mesh.face_ranges())
     {
-        const Face& face = impl_->state_.mesh.faces()[f];
-        out[face.slot] = face.vertex;
+        for (const Face& face : range)
+        {
+            out[face.slot] = face.vertex;
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "codec/stream_info.h"
+#include "codec/triangle_updates.h"
 #include "core/result.h"
 #include "mesh/indexed_mesh.h"
 
@@ -11,13 +12,6 @@
 #include <vector>
 
 namespace vsplit::codec {
-
-/// A triangle that is new or has changed; `slot` is its place in the triangle list, for ever.
-struct TriangleUpdate
-{
-    std::uint32_t slot = 0;
-    Triangle vertices{};
-};
 
 /// What one StreamDecoder::step() did.
 enum class StepKind : std::uint8_t
@@ -40,9 +34,9 @@ struct Step
     /// Vertices from here on have new positions: equals first_new_vertex, or 0 when known positions
     /// gained precision.
     std::uint32_t first_moved_vertex = 0;
-    std::uint32_t vertices = 0;                 ///< Vertices of the mesh now.
-    std::uint32_t faces = 0;                    ///< Triangles of the mesh now.
-    std::span<const TriangleUpdate> triangles;  ///< Valid until the next step() or feed().
+    std::uint32_t vertices = 0;  ///< Vertices of the mesh now.
+    std::uint32_t faces = 0;     ///< Triangles of the mesh now.
+    TriangleUpdates triangles;   ///< Valid until the next step(), and while the decoder stays.
 };
 
 /// Turns the bytes of a stream, as they come, into a mesh that gets finer. Vertices are appended and

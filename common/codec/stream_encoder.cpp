@@ -127,29 +127,15 @@ private:
         {
             place_vertex(sources[vertex]);
         }
-        reserve();
+        state_.mesh.reserve(
+            static_cast<std::uint32_t>(plan_.mesh->positions.size()),
+            static_cast<std::uint32_t>(plan_.mesh->triangles.size())
+        );
         state_.bits = plan_.grid.bits;
         state_.shift = level.shift;
         VSPLIT_TRY(state_.mesh.set_base(encoded->decoded, state_.max_index()));
         add_chunk(proto::ChunkKind::Base, encoded->bytes, &level);
         return {};
-    }
-
-    void reserve()
-    {
-        std::size_t largest_batch = 0;
-        for (const PlannedLevel& level : plan_.levels)
-        {
-            for (const auto& batch : level.batches)
-            {
-                largest_batch = std::max(largest_batch, batch.size() * 2);
-            }
-        }
-        state_.mesh.reserve(
-            static_cast<std::uint32_t>(plan_.mesh->positions.size()),
-            static_cast<std::uint32_t>(plan_.mesh->triangles.size()),
-            static_cast<std::uint32_t>(largest_batch)
-        );
     }
 
     /// Finds the corner at which a collapse's wedge begins in the coarse mesh.
@@ -236,7 +222,6 @@ private:
             const auto count = static_cast<std::uint32_t>(level.batches[i].size());
             bits.raw(count, kSplitCountBits);
             VSPLIT_TRY(add_splits(bits, level.batches[i], *plan, count));
-            state_.mesh.finish_batch();
         }
         start_batch(state_);
         const std::size_t refinement =
@@ -271,7 +256,6 @@ private:
             left -= count;
             add_chunk(proto::ChunkKind::Batch, chunk.view(), chunks == 1 ? &level : nullptr);
         }
-        state_.mesh.finish_batch();
         return {};
     }
 
@@ -289,7 +273,9 @@ private:
         for (std::size_t i = 0; i < frames.size(); ++i)
         {
             const Split& split = state_.splits[i];
-            const std::uint32_t removed = batch[split.source].removed;
+            const std::uint32_t source =
+                plan.split_of_face[static_cast<std::size_t>(face_of(split.first))];
+            const std::uint32_t removed = batch[source].removed;
             positions.push_back(on_grid_[removed]);
             place_vertex(removed);
             if (split.kind == SplitKind::Interior)
@@ -300,7 +286,7 @@ private:
         const auto fitted = fit_weights(samples, state_.weights);
         code_weights(bits, state_, fitted.has_value(), fitted.value_or(state_.weights));
         VSPLIT_TRY(code_positions(bits, state_, positions));
-        state_.mesh.apply(state_.splits, nullptr);
+        state_.mesh.apply(state_.splits);
         return {};
     }
 

@@ -82,9 +82,7 @@ std::uint64_t decoder_heap_bytes(const StreamInfo& info)
 {
     std::uint64_t largest_chunk = 0;
     std::uint32_t largest_batch = 0;
-    std::uint64_t largest_level = 0;
     std::uint32_t previous = 0;
-    std::uint32_t level_start = 0;
     std::uint64_t stitched = 0;
     for (const ChunkInfo& chunk : info.chunks)
     {
@@ -92,23 +90,18 @@ std::uint64_t decoder_heap_bytes(const StreamInfo& info)
         largest_chunk = std::max<std::uint64_t>(largest_chunk, chunk.bytes);
         largest_batch = std::max(largest_batch, chunk.vertices - previous);
         previous = chunk.vertices;
-        if (chunk.ends_level)
-        {
-            largest_level = std::max<std::uint64_t>(largest_level, chunk.vertices - level_start);
-            level_start = chunk.vertices;
-        }
     }
     // Per vertex: position and valence; its stitch, its place in their order, one class of its own. Per
-    // face: connectivity and its new place. Per split of the largest level: its two new faces; of the
-    // largest batch: operation and triangle updates. Per vertex of the base what Draco needs besides
-    // the tables of its entropy coder. The constant covers the learned model and small things.
+    // face: connectivity. Per split of the largest chunk: where it is. Per vertex of the base what
+    // Draco needs besides the tables of its entropy coder. The constant covers the learned model and
+    // small things.
     constexpr std::uint64_t kFixed = 128U * 1024U;
     const ChunkInfo& base = info.chunks.front();
     const auto max_index = static_cast<std::uint32_t>(info.grid.max_index());
     return kFixed + BaseMeshTables::of(base.vertices, max_index).heap_bytes() +
-           512ULL * std::max(base.vertices, base.faces / 2) + 18ULL * info.vertex_count +
-           12ULL * stitched + 36ULL * info.face_count + 64ULL * largest_level +
-           160ULL * largest_batch + largest_chunk + sizeof(ChunkInfo) * info.chunks.size() * 2;
+           512ULL * std::max(base.vertices, base.faces / 2) + 14ULL * info.vertex_count +
+           12ULL * stitched + 32ULL * info.face_count + 8ULL * largest_batch + largest_chunk +
+           sizeof(ChunkInfo) * info.chunks.size() * 2;
 }
 
 }  // namespace vsplit::codec

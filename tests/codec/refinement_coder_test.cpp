@@ -22,7 +22,7 @@ BatchState tetrahedron()
     BatchState state;
     state.bits = 10;
     state.shift = 3;
-    state.mesh.reserve(4, 4, 4);
+    state.mesh.reserve(4, 4);
     const GridMesh base{
         .positions = {{10, 20, 30}, {100, 20, 30}, {10, 120, 30}, {0, 127, 127}},
         .triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}},

@@ -1,6 +1,7 @@
 #include "codec/refinement_mesh.h"
 
 #include "codec/shapes.h"
+#include "codec/split_updates.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -34,8 +35,7 @@ Result<void> set_base(RefinementMesh& mesh, const GridMesh& base, std::uint32_t 
 {
     mesh.reserve(
         static_cast<std::uint32_t>(base.positions.size()) + room,
-        static_cast<std::uint32_t>(base.triangles.size()) + 2 * room,
-        2 * room
+        static_cast<std::uint32_t>(base.triangles.size()) + 2 * room
     );
     return mesh.set_base(base, kMost);
 }
@@ -197,11 +197,16 @@ void expect_split(const IndexedMesh& shape, Split split, std::size_t added)
     mesh.start_batch();
     const std::uint32_t kept = mesh.vertex(split.first);
     const std::uint32_t right = mesh.vertex(next_corner(split.first));
-    split.seed = codec::face_of(split.first);
     const std::vector<Split> splits{split};
     EXPECT_EQ(RefinementMesh::added_faces(splits), added);
     std::vector<codec::TriangleUpdate> updates;
-    mesh.apply(splits, &updates);
+    codec::SplitUpdates source(mesh);
+    source.show(splits);
+    mesh.apply(splits);
+    for (const codec::TriangleUpdate& update : codec::TriangleUpdates(source))
+    {
+        updates.push_back(update);
+    }
     const auto removed = static_cast<std::uint32_t>(shape.positions.size());
     EXPECT_EQ(mesh.vertex_count(), removed + 1);
     EXPECT_EQ(mesh.face_count(), shape.triangles.size() + added);
@@ -214,7 +219,7 @@ void expect_split(const IndexedMesh& shape, Split split, std::size_t added)
         triangles[update.slot] = update.vertices;
         EXPECT_THAT(update.vertices, ::testing::Contains(removed));
     }
-    mesh.finish_batch();
+    mesh.start_batch();
     for (std::uint32_t f = 0; f < mesh.face_count(); ++f)
     {
         EXPECT_EQ(mesh.faces()[f].vertex, triangles[mesh.faces()[f].slot]);
@@ -242,6 +247,47 @@ void expect_split(const IndexedMesh& shape, Split split, std::size_t added)
             ASSERT_TRUE(across < 0 || mesh.opposite(across) == corner);
             ASSERT_TRUE(across < 0 || mesh.vertex(across) == again.vertex(again.opposite(slot)));
         }
+    }
+}
+
+TEST(RefinementMesh, PutsNewFacesBesideTheirSeeds)
+{
+    // Faces 0 .. 8 round vertex 0; the seeds are faces 1, 4 and 5.
+    const GridMesh base = on_grid(fan(9));
+    const std::vector<Split> splits{
+        {.first = 0, .wedge = 3, .before = 1},
+        {.first = 4 * 4 + 2, .wedge = 1, .kind = SplitKind::BoundaryLeft},
+        {.first = 4 * 5, .wedge = 2},
+    };
+    const std::vector<std::uint32_t> expected{0, 1, 9, 10, 2, 3, 4, 11, 5, 12, 13, 6, 7, 8};
+    for (const std::uint32_t room : {5U, 7U, 10U, 100U})  // of 5, none is left
+    {
+        RefinementMesh mesh;
+        mesh.reserve(20, 9 + room);
+        ASSERT_TRUE(mesh.set_base(base, kMost).has_value());
+        mesh.start_batch();
+        mesh.apply(std::span(splits).first(1));
+        mesh.apply(std::span(splits).subspan(1));
+        EXPECT_EQ(mesh.added_count(), 5U);
+        mesh.start_batch();
+        EXPECT_EQ(mesh.added_count(), 0U);
+        ASSERT_EQ(mesh.face_count(), expected.size());
+        std::vector<std::uint32_t> slots;
+        for (std::uint32_t f = 0; f < mesh.face_count(); ++f)
+        {
+            slots.push_back(mesh.faces()[f].slot);
+            for (Corner k = 0; k < 3; ++k)
+            {
+                const Corner corner = static_cast<Corner>(f) * 4 + k;
+                const Corner across = mesh.opposite(corner);
+                EXPECT_TRUE(across < 0 || mesh.opposite(across) == corner);
+                EXPECT_TRUE(
+                    across < 0 ||
+                    mesh.vertex(next_corner(across)) == mesh.vertex(previous_corner(corner))
+                );
+            }
+        }
+        EXPECT_EQ(slots, expected) << "room for " << room;
     }
 }
 

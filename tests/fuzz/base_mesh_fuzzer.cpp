@@ -81,7 +81,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     require(mesh->positions.size() == counts.vertices && mesh->triangles.size() == counts.faces);
     codec::RefinementMesh refinement;
-    refinement.reserve(counts.vertices, counts.faces, 0);
+    refinement.reserve(counts.vertices, counts.faces);
     const auto done = refinement.set_base(*mesh, kMostIndex);
     require(done.has_value() || (refinement.vertex_count() == 0 && refinement.face_count() == 0));
     return 0;

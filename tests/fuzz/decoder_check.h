@@ -49,7 +49,7 @@ inline void check_mesh(const codec::StreamDecoder& decoder)
         return;
     }
     codec::RefinementMesh linked;
-    linked.reserve(decoder.vertices(), decoder.faces(), 0);
+    linked.reserve(decoder.vertices(), decoder.faces());
     const auto most = decoder.info()->grid.max_index() >> decoder.shift();
     require(linked.set_base(mesh, most).has_value());
     std::vector<float> positions(mesh.positions.size() * 3);
