@@ -191,7 +191,7 @@ CollapseCost::CollapseCost(
             add_triangle(positions, triangles[f], quadrics_);
             for (std::size_t edge = 0; edge < 3; ++edge)
             {
-                const auto corner = static_cast<std::int32_t>(3 * f + (edge + 2) % 3);
+                const auto corner = static_cast<std::int32_t>(4 * f + (edge + 2) % 3);
                 if (mesh.face_across(corner) < 0)
                 {
                     add_boundary_edge(positions, triangles[f], edge, quadrics_);

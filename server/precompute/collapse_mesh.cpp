@@ -6,70 +6,67 @@
 #include <array>
 
 namespace vsplit::precompute {
+namespace {
+
+constexpr std::uint32_t kMostValence = 0x7FFF'FFFFU;
+
+}  // namespace
+
 CollapseMesh::CollapseMesh(std::uint32_t vertex_count, std::span<const Triangle> triangles)
-    : vertex_(triangles.size() * 3),
-      opposite_(triangles.size() * 3, -1),
-      corner_of_(vertex_count, -1),
-      valence_(vertex_count, 0),
-      boundary_(vertex_count, 0)
+    : faces_(triangles.size()), links_(vertex_count)
 {
-    for (std::size_t c = 0; c < vertex_.size(); ++c)
+    for (std::size_t f = 0; f < triangles.size(); ++f)
     {
-        const std::uint32_t v = triangles[c / 3][c % 3];
-        vertex_[c] = static_cast<std::int32_t>(v);
-        corner_of_[v] = static_cast<std::int32_t>(c);
-    }
-    link_opposites();
-    for (std::int32_t c = 0; c < static_cast<std::int32_t>(vertex_.size()); ++c)
-    {
-        const bool last = opposite(previous(c)) < 0;
-        valence_[vertex(c)] += last ? 2 : 1;
-        if (last)
+        for (std::size_t k = 0; k < 3; ++k)
         {
-            boundary_[vertex(c)] = 1;
-            boundary_[vertex(next(c))] = 1;
+            const std::uint32_t v = triangles[f][k];
+            faces_[f].vertex[k] = static_cast<std::int32_t>(v);
+            links_[v].corner = static_cast<std::int32_t>(4 * f + k);
         }
     }
+    link_opposites();
+    for_each_corner([this](std::int32_t c) {
+        Link& link = links_[vertex(c)];
+        const bool last = opposite(previous(c)) < 0;
+        link.valence = (link.valence + (last ? 2U : 1U)) & kMostValence;
+        if (last)
+        {
+            link.boundary = 1;
+            links_[vertex(next(c))].boundary = 1;
+        }
+    });
 }
 
 void CollapseMesh::link_opposites()
 {
     // Half-edges sorted by their first vertex, by counting.
-    std::vector<std::uint32_t> start(corner_of_.size() + 1, 0);
-    const auto corners = static_cast<std::int32_t>(vertex_.size());
-    for (std::int32_t c = 0; c < corners; ++c)
-    {
-        ++start[vertex(next(c)) + 1];
-    }
+    std::vector<std::uint32_t> start(links_.size() + 1, 0);
+    for_each_corner([&](std::int32_t c) { ++start[vertex(next(c)) + 1]; });
     for (std::size_t v = 1; v < start.size(); ++v)
     {
         start[v] += start[v - 1];
     }
-    std::vector<std::int32_t> leaving(vertex_.size());
+    std::vector<std::int32_t> leaving(3 * faces_.size());
     std::vector<std::uint32_t> fill(start.begin(), start.end() - 1);
-    for (std::int32_t c = 0; c < corners; ++c)
-    {
-        leaving[fill[vertex(next(c))]++] = c;
-    }
-    for (std::int32_t c = 0; c < corners; ++c)
-    {
+    for_each_corner([&](std::int32_t c) { leaving[fill[vertex(next(c))]++] = c; });
+    for_each_corner([&](std::int32_t c) {
         const std::uint32_t from = vertex(previous(c));
         for (std::uint32_t i = start[from]; i < start[from + 1]; ++i)
         {
             if (vertex(previous(leaving[i])) == vertex(next(c)))
             {
-                opposite_[static_cast<std::size_t>(c)] = leaving[i];
+                set_opposite(c, leaving[i]);
                 break;
             }
         }
-    }
+    });
 }
 
 bool CollapseMesh::ring(std::uint32_t center, OneRing& ring) const
 {
     ring.size = 0;
-    ring.boundary = boundary_[center] != 0;
-    if (valence_[center] > OneRing::kMost)
+    ring.boundary = is_boundary(center);
+    if (valence(center) > OneRing::kMost)
     {
         return false;
     }
@@ -99,9 +96,9 @@ bool CollapseMesh::can_collapse(
 {
     const std::size_t degree = ring.size;
     const std::uint32_t target = ring.vertex[kept];
-    const auto least = [this](std::uint32_t v) { return boundary_[v] != 0 ? 2U : 3U; };
+    const auto least = [this](std::uint32_t v) { return is_boundary(v) ? 2U : 3U; };
     const auto gained = static_cast<std::uint32_t>(degree) - (ring.boundary ? 3U : 4U);
-    const std::uint32_t after = valence_[target] + gained;
+    const std::uint32_t after = valence(target) + gained;
     if (after > valence_limit || after < least(target))
     {
         return false;
@@ -117,7 +114,7 @@ bool CollapseMesh::can_collapse(
     for (const std::size_t loser : losers)
     {
         const std::uint32_t v = ring.vertex[loser];
-        if (valence_[v] <= least(v))
+        if (valence(v) <= least(v))
         {
             return false;
         }
@@ -147,19 +144,11 @@ void CollapseMesh::link(std::int32_t a, std::int32_t b)
 {
     if (a >= 0)
     {
-        opposite_[static_cast<std::size_t>(a)] = b;
+        set_opposite(a, b);
     }
     if (b >= 0)
     {
-        opposite_[static_cast<std::size_t>(b)] = a;
-    }
-}
-
-void CollapseMesh::drop_face(std::int32_t face)
-{
-    for (std::int32_t c = 3 * face; c < 3 * face + 3; ++c)
-    {
-        vertex_[static_cast<std::size_t>(c)] = -1;
+        set_opposite(b, a);
     }
 }
 
@@ -174,26 +163,28 @@ void CollapseMesh::collapse(std::uint32_t removed, const OneRing& ring, std::siz
     const std::int32_t right_corner = has_right ? ring.corner[(kept + degree - 1) % degree] : -1;
     for (std::size_t i = 0; i < ring.face_count; ++i)
     {
-        vertex_[static_cast<std::size_t>(ring.corner[i])] = static_cast<std::int32_t>(target);
+        Face& face = faces_[static_cast<std::size_t>(ring.corner[i] >> 2)];
+        face.vertex[static_cast<std::size_t>(ring.corner[i] & 3)] =
+            static_cast<std::int32_t>(target);
     }
     if (has_left)
     {
         // Face (removed, kept, left): join its outer neighbour with the next face of the ring.
         link(opposite(next(left_corner)), opposite(left_corner));
-        --valence_[ring.vertex[(kept + 1) % degree]];
+        --links_[ring.vertex[(kept + 1) % degree]].valence;
     }
     if (has_right)
     {
         link(opposite(previous(right_corner)), opposite(right_corner));
-        --valence_[ring.vertex[(kept + degree - 1) % degree]];
+        --links_[ring.vertex[(kept + degree - 1) % degree]].valence;
     }
     if (has_left)
     {
-        drop_face(left_corner / 3);
+        faces_[static_cast<std::size_t>(left_corner >> 2)] = {};
     }
     if (has_right)
     {
-        drop_face(right_corner / 3);
+        faces_[static_cast<std::size_t>(right_corner >> 2)] = {};
     }
     // Every vertex of the ring remembers a corner in a face that is left.
     for (std::size_t i = 0; i < ring.face_count; ++i)
@@ -203,26 +194,24 @@ void CollapseMesh::collapse(std::uint32_t removed, const OneRing& ring, std::siz
         {
             continue;
         }
-        corner_of_[target] = corner;
-        corner_of_[ring.vertex[i]] = next(corner);
-        corner_of_[ring.vertex[(i + 1) % degree]] = previous(corner);
+        links_[target].corner = corner;
+        links_[ring.vertex[i]].corner = next(corner);
+        links_[ring.vertex[(i + 1) % degree]].corner = previous(corner);
     }
-    valence_[target] += static_cast<std::uint32_t>(degree) - (ring.boundary ? 3U : 4U);
-    corner_of_[removed] = -1;
+    links_[target].valence =
+        (valence(target) + static_cast<std::uint32_t>(degree) - (ring.boundary ? 3U : 4U)) &
+        kMostValence;
+    links_[removed].corner = -1;
 }
 
 std::vector<Triangle> CollapseMesh::triangles() const
 {
     std::vector<Triangle> result;
-    for (std::size_t c = 0; c < vertex_.size(); c += 3)
+    for (std::uint32_t face = 0; face < faces_.size(); ++face)
     {
-        if (vertex_[c] >= 0)
+        if (has_face(face))
         {
-            result.push_back(
-                {static_cast<std::uint32_t>(vertex_[c]),
-                 static_cast<std::uint32_t>(vertex_[c + 1]),
-                 static_cast<std::uint32_t>(vertex_[c + 2])}
-            );
+            result.push_back(triangle(face));
         }
     }
     return result;
@@ -231,9 +220,9 @@ std::vector<Triangle> CollapseMesh::triangles() const
 std::vector<std::uint32_t> CollapseMesh::vertices() const
 {
     std::vector<std::uint32_t> result;
-    for (std::uint32_t v = 0; v < corner_of_.size(); ++v)
+    for (std::uint32_t v = 0; v < links_.size(); ++v)
     {
-        if (corner_of_[v] >= 0)
+        if (!is_removed(v))
         {
             result.push_back(v);
         }

@@ -56,8 +56,8 @@ struct OneRing
     bool boundary = false;
 };
 
-/// A corner table (3 * face + k) in which half-edge collapses are carried out in place. Rings larger
-/// than OneRing::kMost are not walked. Not thread safe.
+/// A corner table (corner 4 * face + k, k = 0 .. 2) in which half-edge collapses are carried out in place.
+/// Rings larger than OneRing::kMost are not walked. Not thread safe.
 class CollapseMesh
 {
 public:
@@ -80,48 +80,53 @@ public:
     ) const;
 
     /// True for vertices on the boundary.
-    [[nodiscard]] bool is_boundary(std::uint32_t vertex) const { return boundary_[vertex] != 0; }
+    [[nodiscard]] bool is_boundary(std::uint32_t vertex) const
+    {
+        return links_[vertex].boundary != 0;
+    }
 
     /// True for vertices that a collapse folded away.
-    [[nodiscard]] bool is_removed(std::uint32_t vertex) const { return corner_of_[vertex] < 0; }
+    [[nodiscard]] bool is_removed(std::uint32_t vertex) const { return links_[vertex].corner < 0; }
 
     /// Neighbours of a vertex.
-    [[nodiscard]] std::uint32_t valence(std::uint32_t vertex) const { return valence_[vertex]; }
+    [[nodiscard]] std::uint32_t valence(std::uint32_t vertex) const
+    {
+        return links_[vertex].valence;
+    }
 
     /// Face across the edge opposite to a corner, or -1.
     [[nodiscard]] std::int32_t face_across(std::int32_t corner) const
     {
-        const std::int32_t across = opposite_[static_cast<std::size_t>(corner)];
-        return across < 0 ? -1 : across / 3;
+        const std::int32_t across = opposite(corner);
+        return across < 0 ? -1 : across >> 2;
     }
 
     /// Vertex across the edge opposite to a corner. Precondition: face_across(corner) >= 0.
     [[nodiscard]] std::uint32_t vertex_across(std::int32_t corner) const
     {
-        return static_cast<std::uint32_t>(
-            vertex_[static_cast<std::size_t>(opposite_[static_cast<std::size_t>(corner)])]
-        );
+        return vertex(opposite(corner));
     }
 
     /// Vertex at a corner.
     [[nodiscard]] std::uint32_t vertex(std::int32_t c) const
     {
-        return static_cast<std::uint32_t>(vertex_[static_cast<std::size_t>(c)]);
+        const Face& face = faces_[static_cast<std::size_t>(c >> 2)];
+        return static_cast<std::uint32_t>(face.vertex[static_cast<std::size_t>(c & 3)]);
     }
 
     /// The next corner of the same face.
-    [[nodiscard]] static std::int32_t next(std::int32_t c) { return c % 3 == 2 ? c - 2 : c + 1; }
+    [[nodiscard]] static std::int32_t next(std::int32_t c) { return c + 1 - 3 * ((c >> 1) & 1); }
 
     /// The previous corner of the same face.
     [[nodiscard]] static std::int32_t previous(std::int32_t c)
     {
-        return c % 3 == 0 ? c + 2 : c - 1;
+        return c + 2 - 3 * ((c | (c >> 1)) & 1);
     }
 
     /// A corner of a vertex that is not removed; on the boundary that of its first face.
     [[nodiscard]] std::int32_t first_corner(std::uint32_t vertex) const
     {
-        std::int32_t corner = corner_of_[vertex];
+        std::int32_t corner = links_[vertex].corner;
         while (is_boundary(vertex) && opposite(previous(corner)) >= 0)
         {
             corner = previous(opposite(previous(corner)));
@@ -137,17 +142,14 @@ public:
     }
 
     /// True for faces that no collapse has dropped.
-    [[nodiscard]] bool has_face(std::uint32_t face) const { return vertex_[3 * face] >= 0; }
+    [[nodiscard]] bool has_face(std::uint32_t face) const { return faces_[face].vertex[0] >= 0; }
 
     /// Vertices of a face. Precondition: has_face().
     [[nodiscard]] Triangle triangle(std::uint32_t face) const
     {
-        const auto corner = static_cast<std::int32_t>(3 * face);
+        const auto corner = static_cast<std::int32_t>(4 * face);
         return {vertex(corner), vertex(corner + 1), vertex(corner + 2)};
     }
-
-    /// Number of faces at the start; face indices stay below it.
-    [[nodiscard]] std::size_t face_slots() const { return vertex_.size() / 3; }
 
     /// Copies the triangles that are left.
     [[nodiscard]] std::vector<Triangle> triangles() const;
@@ -158,18 +160,46 @@ public:
 private:
     [[nodiscard]] std::int32_t opposite(std::int32_t c) const
     {
-        return opposite_[static_cast<std::size_t>(c)];
+        return faces_[static_cast<std::size_t>(c >> 2)].opposite[static_cast<std::size_t>(c & 3)];
+    }
+
+    /// Half a cache line, aligned, for walks go from face to face.
+    struct alignas(32) Face
+    {
+        std::array<std::int32_t, 4> vertex{-1, -1, -1, -1};    ///< By corner; -1 in removed faces.
+        std::array<std::int32_t, 4> opposite{-1, -1, -1, -1};  ///< By corner; -1 at the boundary.
+    };
+
+    /// What is known of a vertex.
+    struct Link
+    {
+        std::int32_t corner = -1;  ///< One of its corners; -1 when removed.
+        std::uint32_t valence : 31 = 0;
+        std::uint32_t boundary : 1 = 0;
+    };
+
+    template <typename Visit>
+    void for_each_corner(const Visit& visit) const
+    {
+        for (std::int32_t c = 0; c < static_cast<std::int32_t>(4 * faces_.size()); c += 4)
+        {
+            visit(c);
+            visit(c + 1);
+            visit(c + 2);
+        }
+    }
+
+    void set_opposite(std::int32_t c, std::int32_t opposite)
+    {
+        Face& face = faces_[static_cast<std::size_t>(c >> 2)];
+        face.opposite[static_cast<std::size_t>(c & 3)] = opposite;
     }
 
     void link_opposites();
     void link(std::int32_t a, std::int32_t b);
-    void drop_face(std::int32_t face);
 
-    std::vector<std::int32_t> vertex_;     ///< By corner; -1 in removed faces.
-    std::vector<std::int32_t> opposite_;   ///< By corner; -1 at the boundary.
-    std::vector<std::int32_t> corner_of_;  ///< By vertex one of its corners; -1 when removed.
-    std::vector<std::uint32_t> valence_;
-    std::vector<std::uint8_t> boundary_;
+    std::vector<Face> faces_;
+    std::vector<Link> links_;  ///< By vertex.
 };
 
 }  // namespace vsplit::precompute

@@ -4,6 +4,7 @@
 // square is that of the surface and the cost does not grow with the mesh.
 #include "precompute/error_tracker.h"
 
+#include "precompute/level_builder.h"
 #include "precompute/parallel_ranges.h"
 
 #include <algorithm>
@@ -36,7 +37,7 @@ constexpr std::size_t kSearchedFaces = 256;
 
 /// Vertices that are measured when they are removed, the costliest of every batch, and how many of them
 /// are followed further on: the largest distance mostly is that of a vertex.
-constexpr std::size_t kMeasuredVertices = 512;
+constexpr std::size_t kMeasuredVertices = kCostliest;
 constexpr std::size_t kFollowedVertices = 64;
 
 using Position = std::array<float, 3>;

@@ -49,7 +49,7 @@ public:
         append(mesh.vertex(CollapseMesh::next(corner)));
         do
         {
-            face_[size_ - 1] = static_cast<std::uint32_t>(corner / 3);
+            face_[size_ - 1] = static_cast<std::uint32_t>(corner >> 2);
             append(mesh.vertex(CollapseMesh::previous(corner)));
             corner = mesh.next_around(corner);
         }

@@ -321,6 +321,10 @@ std::vector<codec::Collapse> LevelBuilder::next_level(const LevelStyle& style, s
         }
     }
     std::erase_if(alive_, [this](std::uint32_t v) { return mesh_.is_removed(v); });
+    // Whoever carries them out again walks through memory in order.
+    const auto costliest =
+        done.end() - static_cast<std::ptrdiff_t>(std::min(kCostliest, done.size()));
+    std::ranges::sort(done.begin(), costliest, {}, &codec::Collapse::removed);
     return done;
 }
 

@@ -24,6 +24,9 @@ struct LevelStyle
     double largest_share = 0.18;  ///< At most this share of the vertices goes in the level.
 };
 
+/// Collapses that end a level's list in the order of their cost.
+inline constexpr std::size_t kCostliest = 512;
+
 /// Describes a collapse as the codec wants it. Precondition: CollapseMesh::can_collapse().
 [[nodiscard]] codec::Collapse describe_collapse(
     std::uint32_t removed, const OneRing& ring, std::size_t kept
@@ -44,7 +47,8 @@ public:
     );
 
     /// Chooses and carries out the collapses of the next coarser level. `most`: at most so many.
-    /// Result: the collapses, cheapest first; empty when nothing can go.
+    /// Result: the collapses, the costliest ones (at most kCostliest) last, cheapest first, the others
+    /// before them in the order of their vertices; empty when nothing can go.
     /// Source: Pajarola, Rossignac, "Compressed Progressive Meshes", 2000, section 4 (independence);
     /// here stars are disjoint but rings may share vertices.
     [[nodiscard]] std::vector<codec::Collapse> next_level(

@@ -88,6 +88,14 @@ Result<RepairedMesh> repair_mesh(const IndexedMesh& mesh, std::span<const float>
             result.importance.push_back(result.importance[result.stitches[v]]);
         }
     }
+    if (result.report.non_manifold_edges == 0 && result.stitches.empty())
+    {
+        // Nothing was cut: all edges are as the flood fill saw them.
+        result.components = orientation.components;
+        result.boundary_edges =
+            static_cast<std::uint32_t>(std::ranges::count(orientation.opposite, kNoHalfEdge));
+        return result;
+    }
     const auto linked = make_half_edge_mesh(result.mesh);
     if (!linked)
     {

@@ -55,6 +55,7 @@ public:
 private:
     void fill_component(std::uint32_t seed)
     {
+        ++result_.components;
         const std::size_t begin = order_.size();
         std::size_t reversed = 0;
         result_.reversed[seed] = kKept;

@@ -23,6 +23,7 @@ struct Orientation
 {
     std::vector<HalfEdge> opposite;      ///< Per half-edge the one it is joined to, or kNoHalfEdge.
     std::vector<std::uint8_t> reversed;  ///< Per face 1 when it must turn round.
+    std::uint32_t components = 0;        ///< Sets of faces that are joined.
 };
 
 /// Second step: joins the faces of every edge that has exactly two, spreads one direction over each

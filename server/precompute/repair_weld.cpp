@@ -16,10 +16,12 @@ struct PlacedVertex
     friend auto operator<=>(const PlacedVertex&, const PlacedVertex&) = default;
 };
 
-/// A triangle as it is sorted: equal vertex sets side by side, the smallest face first.
+/// A triangle as it is sorted among those with its smallest vertex: equal ones side by side, the smallest
+/// face first.
 struct SortedFace
 {
-    Triangle vertices{};
+    std::uint32_t middle = 0;   ///< Vertex.
+    std::uint32_t largest = 0;  ///< Vertex.
     std::uint32_t face = 0;
 
     friend auto operator<=>(const SortedFace&, const SortedFace&) = default;
@@ -69,22 +71,37 @@ std::vector<std::uint32_t> weld(
     return representative;
 }
 
-/// Marks every triangle that has the vertices of an earlier one.
-std::vector<std::uint8_t> find_duplicates(std::span<const Triangle> triangles)
+/// Marks every triangle that has the vertices of an earlier one. Only triangles with the same smallest
+/// vertex are compared. `vertex_count`: the indices are smaller.
+std::vector<std::uint8_t> find_duplicates(
+    std::span<const Triangle> triangles, std::size_t vertex_count
+)
 {
-    std::vector<SortedFace> sorted;
-    sorted.reserve(triangles.size());
+    std::vector<std::uint32_t> starts(vertex_count + 1, 0);
+    for (const Triangle& triangle : triangles)
+    {
+        ++starts[std::ranges::min(triangle) + 1];
+    }
+    std::partial_sum(starts.begin(), starts.end(), starts.begin());
+    std::vector<std::uint32_t> fill(starts.begin(), starts.end() - 1);
+    std::vector<SortedFace> rows(triangles.size());
     for (std::uint32_t face = 0; face < triangles.size(); ++face)
     {
-        SortedFace row{triangles[face], face};
-        std::sort(row.vertices.begin(), row.vertices.end());
-        sorted.push_back(row);
+        const auto& [a, b, c] = triangles[face];
+        const std::uint32_t low = std::min({a, b, c});
+        const std::uint32_t high = std::max({a, b, c});
+        rows[fill[low]++] = {a ^ b ^ c ^ low ^ high, high, face};
     }
-    std::sort(sorted.begin(), sorted.end());
     std::vector<std::uint8_t> duplicate(triangles.size(), 0);
-    for (std::size_t i = 1; i < sorted.size(); ++i)
+    for (std::size_t vertex = 0; vertex < vertex_count; ++vertex)
     {
-        duplicate[sorted[i].face] = sorted[i].vertices == sorted[i - 1].vertices ? 1 : 0;
+        std::sort(rows.begin() + starts[vertex], rows.begin() + starts[vertex + 1]);
+        for (std::uint32_t i = starts[vertex] + 1; i < starts[vertex + 1]; ++i)
+        {
+            const bool same =
+                rows[i].middle == rows[i - 1].middle && rows[i].largest == rows[i - 1].largest;
+            duplicate[rows[i].face] = same ? 1 : 0;
+        }
     }
     return duplicate;
 }
@@ -108,7 +125,7 @@ std::vector<Triangle> clean_triangles(
         }
         proper.push_back(welded);
     }
-    const auto duplicate = find_duplicates(proper);
+    const auto duplicate = find_duplicates(proper, representative.size());
     std::size_t kept = 0;
     for (std::size_t face = 0; face < proper.size(); ++face)
     {
