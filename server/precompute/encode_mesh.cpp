@@ -37,10 +37,12 @@ constexpr std::uint32_t kDefaultBaseVertices = 64;
 constexpr double kRegularShare = 0.45;
 
 /// Share of the vertices that a level below those removes: smaller follows the surface better, larger
-/// costs less, which small files feel because each level takes about twenty bytes of its own.
+/// costs less, because each level takes about twenty bytes of its own.
 constexpr double kCoarseShare = 0.2;
-constexpr double kCoarseShareOfSmall = 0.3;
-constexpr std::size_t kSmallMesh = 8000;
+
+/// Share of the vertices, the cheapest, that it may choose among. With stars that must not overlap a
+/// batch soon runs out of cheap ones, and one that should have stayed shows for the rest of the way.
+constexpr double kCoarseChoice = 0.5;
 
 /// Levels that make less progress than this end the sequence.
 constexpr double kLeastShare = 0.02;
@@ -86,7 +88,7 @@ LevelStyle style_for(Metric metric, std::size_t vertices, std::size_t all)
             .largest_share = 1.0,
         };
     }
-    LevelStyle style{.largest_share = all < kSmallMesh ? kCoarseShareOfSmall : kCoarseShare};
+    LevelStyle style{.cheapest_share = kCoarseChoice, .largest_share = kCoarseShare};
     const double smallest = static_cast<double>(kSmallestBatch) / static_cast<double>(vertices);
     style.largest_share = std::max(style.largest_share, smallest);
     return style;
@@ -137,29 +139,32 @@ Sequence make_sequence(Source& source, const EncodeOptions& options, const Progr
     LevelBuilder builder(working, cost, source.exact, source.locked, options.threads);
     const std::size_t base = next_stop(options, 0);
     Sequence sequence;
+    bool choosy = true;
     while (builder.vertex_count() > base)
     {
         const std::size_t before = builder.vertex_count();
         const std::size_t stop = next_stop(options, before);
-        auto level =
-            builder.next_level(style_for(options.metric, before, vertex_count), before - stop);
-        if (level.empty())
-        {
-            break;
-        }
+        LevelStyle style = style_for(options.metric, before, vertex_count);
+        style.cheapest_share = choosy ? style.cheapest_share : 1.0;
+        auto level = builder.next_level(style, before - stop);
         const bool arrived = before - level.size() == stop;
         const bool slow = !arrived && static_cast<double>(level.size()) <
                                           kLeastShare * static_cast<double>(before);
-        sequence.levels.push_back({std::move(level)});
-        sequence.starts.push_back(arrived ? 1 : 0);
+        if (!level.empty())
+        {
+            sequence.levels.push_back({std::move(level)});
+            sequence.starts.push_back(arrived ? 1 : 0);
+        }
         if (progress)
         {
             progress("collapse", 1.0 - static_cast<double>(builder.vertex_count()) / vertex_count);
         }
-        if (slow && builder.vertex_count() > base)
+        if (slow && !choosy)
         {
             break;
         }
+        // Where topology holds the cheap ones back, others must do.
+        choosy = choosy && !slow;
     }
     sequence.base = working.triangles();
     return sequence;

@@ -18,9 +18,9 @@ namespace {
 constexpr std::size_t kFewestSamples = 2000;
 constexpr std::size_t kMostSamples = 4000;
 
-/// Samples in the direction from coarse to source. With coarse vertices near those of the source that
-/// direction is hardly ever the larger one, so that fewer points will do.
-constexpr std::size_t kCoarseSamples = 500;
+/// Samples in the direction from coarse to source, which is hardly ever much larger than the other one;
+/// fewer would often make it so by chance.
+constexpr std::size_t kCoarseSamples = 1000;
 
 /// Corners of faces that are measured in that direction too, for the maximum: vertices that are shown
 /// off the source are furthest away.
