@@ -89,8 +89,8 @@ def measure_streams(model, folder, judge):
         for vertices in [report["vertices"], *wanted]:
             level = by_vertices.get(vertices)
             if level is None:
-                note(f"{model.name}, {metric}: no level of {vertices} vertices")
-                continue
+                raise run.programs.Failed(
+                    f"{model.name}, {metric}: there is no level of {vertices} vertices")
             mesh = folder / f"{model.name}-{metric}-{vertices}.ply"
             run.decode(stream, mesh, level["level"])
             meshes.append(mesh)

@@ -156,9 +156,8 @@ def stream_part(results):
              "The levels are prefixes of one stream a table. Down to 45 % of the vertices the default "
              "metric, and the one without curvature, choose collapses that code well before cheap ones; "
              "coarse levels have coarse positions. Both are in the figures here, and in none of the "
-             "tables further down. A level takes up to a third of the vertices at once, no two of them "
-             "neighbours, which spreads collapses over the model and so hides much of what a bad order "
-             "does."]
+             "tables further down. A level takes many vertices at once, no two of them neighbours, which "
+             "spreads collapses over the model and so hides much of what a bad order does."]
     numerals = iter(NUMERALS)
     for model in results["models"]:
         for metric in PAPER_TABLES:

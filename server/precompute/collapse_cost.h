@@ -49,7 +49,7 @@ public:
     /// collapse, needed only during construction; `weights`: one factor a vertex for the metrics that
     /// use curvature (see vertex_weights()), empty for the others; `importance`: 0 .. 1 a vertex, 1
     /// for what the publisher wants to keep, or empty. Removing a vertex of importance w costs
-    /// kKeepFactor^w times as much.
+    /// 100^w times as much.
     CollapseCost(
         Metric metric,
         std::span<const Vector3> positions,

@@ -207,7 +207,7 @@ private:
         {
             const std::uint32_t a = ring.vertex[i];
             const std::uint32_t b = ring.vertex[(i + 1) % ring.size];
-            const Face face{static_cast<std::size_t>(ring.corner[i] / 3), {centre, a, b}};
+            const Face face{static_cast<std::size_t>(ring.corner[i] / 4), {centre, a, b}};
             const bool vanishes = a == plan.kept || b == plan.kept;
             if (centre == plan.kept && (a == plan.removed || b == plan.removed))
             {
