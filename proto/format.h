@@ -38,11 +38,15 @@ inline constexpr std::uint8_t kHasAttributes = 0x20;
 /// stream; kinds from 64 on are optional and may be skipped by their length.
 enum class ChunkKind : std::uint8_t
 {
-    Base = 0,     ///< The base mesh, a Draco mesh.
+    Base = 0,     ///< The base mesh.
     Batch = 1,    ///< Vertex splits that refine the mesh.
     Stitch = 64,  ///< Which vertices of the last level are one vertex in the source mesh.
 };
 
 inline constexpr std::uint8_t kFirstOptionalChunkKind = 64;
+
+/// Codecs of the base mesh.
+inline constexpr std::uint8_t kDracoBaseCodec = 0;  ///< A Draco mesh.
+inline constexpr std::uint8_t kSmallBaseCodec = 1;  ///< Our own, without tables, for small ones.
 
 }  // namespace vsplit::proto

@@ -170,7 +170,7 @@ Result<GridMesh> copy_mesh(const draco::Mesh& mesh, std::uint32_t vertices, std:
 
 }  // namespace
 
-Result<GridMesh> decode_base_mesh(
+Result<GridMesh> decode_draco_base(
     std::span<const std::byte> bytes,
     std::uint32_t vertices,
     std::uint32_t faces,

@@ -1,7 +1,10 @@
 #include "codec/base_mesh_encoder.h"
 
 #include "codec/base_mesh_decoder.h"
+#include "codec/entropy_coder.h"
 #include "codec/refinement_mesh.h"
+#include "codec/small_base_coder.h"
+#include "core/byte_writer.h"
 
 #include <draco/compression/encode.h>
 #include <draco/mesh/mesh.h>
@@ -14,6 +17,9 @@ namespace vsplit::codec {
 namespace {
 
 constexpr std::uint32_t kUnknown = 0xFFFFFFFF;
+
+/// Corners of a base that is tried from every one of them.
+constexpr std::size_t kMostSeeds = 150;
 
 Result<std::vector<std::byte>> encode_with_draco(const GridMesh& base, bool edgebreaker)
 {
@@ -224,13 +230,14 @@ Result<EncodedBase> encode_and_match(const GridMesh& base, bool edgebreaker)
 {
     auto bytes = encode_with_draco(base, edgebreaker);
     VSPLIT_TRY(bytes);
-    EncodedBase result{.bytes = std::move(*bytes), .decoded = {}, .vertices = {}};
+    EncodedBase result;
+    result.bytes = std::move(*bytes);
     std::int32_t max_index = 0;
     for (const auto& position : base.positions)
     {
         max_index = std::max(max_index, std::ranges::max(position));
     }
-    auto decoded = decode_base_mesh(
+    auto decoded = decode_draco_base(
         result.bytes,
         static_cast<std::uint32_t>(base.positions.size()),
         static_cast<std::uint32_t>(base.triangles.size()),
@@ -252,10 +259,65 @@ Result<EncodedBase> encode_and_match(const GridMesh& base, bool edgebreaker)
 
 }  // namespace
 
-Result<EncodedBase> encode_base_mesh(const GridMesh& base)
+Result<EncodedBase> encode_draco_base(const GridMesh& base)
 {
     auto result = encode_and_match(base, true);
     return result ? std::move(result) : encode_and_match(base, false);
+}
+
+EncodedBase encode_small_base(const GridMesh& base, const std::array<std::int32_t, 3>& extent)
+{
+    const SmallBaseSource source(base);
+    const std::size_t corners = base.triangles.size() * 3;
+    const std::size_t seeds = corners <= kMostSeeds ? corners : 1;
+    EncodedBase best;
+    best.codec = proto::kSmallBaseCodec;
+    for (std::size_t seed = 0; seed < seeds; ++seed)
+    {
+        BitEncoder bits;
+        SmallBaseCoder<BitEncoder> coder(
+            bits,
+            static_cast<std::uint32_t>(base.positions.size()),
+            static_cast<std::uint32_t>(base.triangles.size()),
+            extent,
+            &source
+        );
+        if (!coder.run(seed))
+        {
+            continue;
+        }
+        ByteWriter out;
+        bits.finish(out);
+        if (best.bytes.empty() || out.size() < best.bytes.size())
+        {
+            best.bytes = out.take();
+            best.decoded = std::move(coder.mesh());
+            best.vertices = coder.order();
+        }
+    }
+    return best;
+}
+
+Result<EncodedBase> encode_base_mesh(
+    const GridMesh& base, const std::array<std::int32_t, 3>& extent
+)
+{
+    if (base.positions.size() > kMaxSmallBaseVertices ||
+        base.triangles.size() > kMaxSmallBaseFaces * base.positions.size())
+    {
+        return encode_draco_base(base);
+    }
+    EncodedBase small = encode_small_base(base, extent);
+    // A Draco mesh takes more than this before it says anything.
+    constexpr std::size_t kDracoBytes = 60;
+    if (!small.bytes.empty() && small.bytes.size() <= kDracoBytes)
+    {
+        return small;
+    }
+    auto draco = encode_draco_base(base);
+    return draco && (small.bytes.empty() || draco->bytes.size() < small.bytes.size())
+               ? std::move(draco)
+               : Result<EncodedBase>(std::move(small));
 }
 
 }  // namespace vsplit::codec

@@ -34,6 +34,16 @@ struct IndexRow
 /// Bytes of a chunk that do not depend on its splits: the checksum and the ends of its bit streams.
 inline constexpr std::uint32_t kChunkOverheadBytes = 6;
 
+/// Bits that a level's start is expected to take when `vertices` known vertices get `drop` more bits of
+/// precision an axis: more where a level before may have shown vertices outside of their own cells.
+/// `shift`: of the level before.
+[[nodiscard]] inline std::uint64_t refinement_bits(std::uint32_t vertices, int shift, int drop)
+{
+    constexpr int kLeastShiftOfMoved = 2;
+    return (shift >= kLeastShiftOfMoved ? 9ULL : 6ULL) * vertices *
+           static_cast<std::uint32_t>(drop) / 2;
+}
+
 /// What splits have cost so far, from which rows predict lengths and the encoder cuts levels into
 /// chunks. Source: proto/STREAM_FORMAT.md, "Rows".
 class SplitCost
@@ -84,20 +94,18 @@ private:
     std::uint64_t splits_ = 16;
 };
 
-/// Builds the model of an integer that typically is below 2^`exponent`.
-[[nodiscard]] inline IntegerModel make_index_integer(int exponent)
+/// Builds the model of an integer that typically is below 2^`size`. `nonzero`: probability, 1/65536, that
+/// it is not 0. A sign in context 2 is hardly ever negative.
+[[nodiscard]] inline IntegerModel make_index_integer(std::uint16_t nonzero, int size)
 {
     constexpr std::uint16_t kCount = 5;
     constexpr std::uint16_t kSettled = 24;
     IntegerModel model;
-    model.nonzero = {static_cast<std::uint16_t>(65536 - (40000 >> exponent)), kCount};
-    for (AdaptiveBit& sign : model.sign)
-    {
-        sign.count = kCount;
-    }
+    model.nonzero = {nonzero, kCount};
+    model.sign = {{{32768, kCount}, {32768, kCount}, {2048, kCount}}};
     for (int e = 0; e < 24; ++e)
     {
-        const int probability = e < exponent - 1 ? 52000 : e < exponent ? 32768 : 16384;
+        const int probability = e < size - 1 ? 52000 : e < size ? 32768 : 16384;
         model.prefix[static_cast<std::size_t>(e)] = {
             static_cast<std::uint16_t>(probability), kCount};
     }
@@ -113,14 +121,14 @@ struct IndexModel
 {
     AdaptiveBit other_kind{2048, 4};
     AdaptiveBit has_boundary{8192, 2};
-    IntegerModel level_chunks = make_index_integer(1);
-    IntegerModel level_vertices = make_index_integer(2);
-    IntegerModel drop = make_index_integer(0);
-    IntegerModel vertices = make_index_integer(0);
-    IntegerModel boundary = make_index_integer(1);
-    IntegerModel bytes = make_index_integer(2);
-    IntegerModel rms = make_index_integer(1);
-    IntegerModel maximum = make_index_integer(2);
+    IntegerModel level_chunks = make_index_integer(28000, 0);
+    IntegerModel level_vertices = make_index_integer(60000, 4);
+    IntegerModel drop = make_index_integer(20000, 0);
+    IntegerModel vertices = make_index_integer(2000, 0);
+    IntegerModel boundary = make_index_integer(56000, 2);
+    IntegerModel bytes = make_index_integer(40000, 1);
+    IntegerModel rms = make_index_integer(44000, 1);
+    IntegerModel maximum = make_index_integer(56000, 2);
 };
 
 /// Codes row after row. `Coder`: BitEncoder or BitDecoder. Not thread safe. Safe on untrusted input.
@@ -142,8 +150,8 @@ public:
             coder_.raw(closed ? 1 : 0, 1) != 0 ? 2 * row.vertices - 4 : code_number(row.faces);
         row.bytes = code_number(row.bytes);
         row.shift = static_cast<int>(coder_.raw(static_cast<std::uint32_t>(row.shift), 5));
-        row.rms_code = coder_.raw(row.rms_code, kErrorCodeBits);
-        row.max_code = coder_.raw(row.max_code, kErrorCodeBits);
+        row.rms_code = code_first_error(row.rms_code);
+        row.max_code = code_first_error(row.max_code);
         vertices_ = row.vertices;
         level_start_ = row.vertices;
         level_vertices_ = row.vertices / 2;
@@ -210,7 +218,14 @@ public:
     }
 
 private:
-    static constexpr int kErrorCodeBits = 9;
+    /// Codes an error of the base: six bits hold all but those below 1/256 of the diagonal.
+    std::uint32_t code_first_error(std::uint32_t code)
+    {
+        constexpr std::uint32_t kSmall = 63;
+        const std::uint32_t low = coder_.raw(std::min(code, kSmall), 6);
+        return low < kSmall ? low : coder_.raw(code, 9);
+    }
+
     static constexpr std::uint32_t kMostBytes = 1U << 28;
 
     /// Codes a number near to what is expected of it, in steps of 2^-`fineness` of that; the rest raw.
@@ -244,22 +259,17 @@ private:
         const std::uint64_t expected =
             std::uint64_t{level_vertices_} * vertices_ / std::max(1U, level_start_);
         const std::uint32_t most = proto::kMaxVertices - vertices_;
-        if (!code_near(
-                model_.level_vertices,
-                row.level_vertices,
-                static_cast<std::uint32_t>(std::min<std::uint64_t>(expected, most)),
-                4,
-                most
-            ))
+        const auto guess = static_cast<std::uint32_t>(std::min<std::uint64_t>(expected, most));
+        if (!code_near(model_.level_vertices, row.level_vertices, guess, 16, most))
         {
             return false;
         }
-        const std::int32_t drop = code_integer(coder_, model_.drop, shift_ - row.shift, 0);
+        const std::int32_t drop = code_integer(coder_, model_.drop, shift_ - row.shift, 2);
         if (drop < 0 || drop > shift_)
         {
             return false;
         }
-        refinement = 3ULL * vertices_ * static_cast<std::uint32_t>(drop);
+        refinement = refinement_bits(vertices_, shift_, drop);
         shift_ -= drop;
         dropped_ = drop > 0;
         level_start_ = vertices_;
@@ -281,7 +291,7 @@ private:
                      model_.vertices,
                      row.vertices,
                      cost_.next_share(vertices_left_, chunks_left_, refinement),
-                     6,
+                     16,
                      vertices_left_
                  ))
         {

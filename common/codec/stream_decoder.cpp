@@ -186,11 +186,23 @@ private:
                                                     : decode_batch(chunk, bytes, step);
     }
 
+    Result<GridMesh> decode_base_mesh(const ChunkInfo& chunk, std::span<const std::byte> bytes)
+        const
+    {
+        if (chunk.codec == proto::kDracoBaseCodec)
+        {
+            const auto max_index = static_cast<std::uint32_t>(state_.max_index());
+            return decode_draco_base(bytes, chunk.vertices, chunk.faces, max_index);
+        }
+        const auto [x, y, z] = info_->extent;
+        const std::array extent{x >> chunk.shift, y >> chunk.shift, z >> chunk.shift};
+        return decode_small_base(bytes, chunk.vertices, chunk.faces, extent);
+    }
+
     Result<void> decode_base(const ChunkInfo& chunk, std::span<const std::byte> bytes, Step& step)
     {
         state_.shift = chunk.shift;
-        const auto max_index = static_cast<std::uint32_t>(state_.max_index());
-        const auto base = decode_base_mesh(bytes, chunk.vertices, chunk.faces, max_index);
+        const auto base = decode_base_mesh(chunk, bytes);
         VSPLIT_TRY(base);
         VSPLIT_TRY(state_.mesh.set_base(*base, state_.max_index()));
         updates_.show_all();

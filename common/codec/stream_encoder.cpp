@@ -4,6 +4,7 @@
 #include "codec/batch_coder.h"
 #include "codec/entropy_coder.h"
 #include "codec/grid_positions.h"
+#include "codec/index_coder.h"
 #include "codec/stitch_coder.h"
 #include "codec/stream_header_writer.h"
 #include "codec/weight_fit.h"
@@ -18,11 +19,11 @@ namespace {
 
 constexpr std::uint32_t kNoVertex = 0xFFFFFFFF;
 
-/// A chunk costs about ten bytes of its own; below this length that would be felt.
-constexpr std::size_t kSmallestChunkBytes = 700;
+/// What header and index of a small stream take.
+constexpr std::size_t kHeaderBytes = 90;
 
-/// Splits from which a chunk tells what splits cost.
-constexpr std::uint32_t kTellingSplits = 64;
+/// A chunk costs about seven bytes of its own; where the prefix is long, shorter ones bring nothing.
+constexpr std::size_t kSmallestChunkBytes = 700;
 
 /// Builds the stream chunk by chunk, keeping the mesh as the decoder will have it.
 class StreamBuilder
@@ -34,6 +35,13 @@ public:
           place_(plan.mesh->positions.size(), kNoVertex),
           on_grid_(*plan.mesh)
     {
+        for (const auto& position : plan.mesh->positions)
+        {
+            for (std::size_t axis = 0; axis < 3; ++axis)
+            {
+                extent_[axis] = std::max(extent_[axis], position[axis]);
+            }
+        }
         if (plan.training != nullptr)
         {
             state_.model = *plan.training;
@@ -121,7 +129,12 @@ private:
             }
             base.triangles.push_back(renumbered);
         }
-        const auto encoded = encode_base_mesh(base);
+        std::array<std::int32_t, 3> extent = extent_;
+        for (std::int32_t& index : extent)
+        {
+            index >>= level.shift;
+        }
+        const auto encoded = encode_base_mesh(base, extent);
         VSPLIT_TRY(encoded);
         for (const std::uint32_t vertex : encoded->vertices)
         {
@@ -135,6 +148,7 @@ private:
         state_.shift = level.shift;
         VSPLIT_TRY(state_.mesh.set_base(encoded->decoded, state_.max_index()));
         add_chunk(proto::ChunkKind::Base, encoded->bytes, &level);
+        chunks_.back().codec = encoded->codec;
         return {};
     }
 
@@ -210,6 +224,8 @@ private:
         {
             return fail(ErrorCode::Internal, "a level takes precision back");
         }
+        const std::uint64_t refinement =
+            refinement_bits(state_.mesh.vertex_count(), shift, shift - level.shift);
         on_grid_.enter(level, level.shift != shift);
         const auto target = on_grid_.of(source_);
         VSPLIT_TRY(code_level_start(bits, state_, level.shift, target));
@@ -224,37 +240,31 @@ private:
             VSPLIT_TRY(add_splits(bits, level.batches[i], *plan, count));
         }
         start_batch(state_);
-        const std::size_t refinement =
-            source_.size() * 3 * static_cast<std::size_t>(shift - state_.shift) / 8;
         return add_last_batch(bits, level, refinement);
     }
 
-    /// Codes the last batch of a level, cut into chunks when it is large. `refinement`: bytes of raw
-    /// refinement bits that ride in the first chunk, which therefore holds fewer splits.
-    Result<void> add_last_batch(BitEncoder& bits, const PlannedLevel& level, std::size_t refinement)
+    /// Codes the last batch of a level, cut into chunks when it is large. `refinement`: bits that
+    /// the level's start is expected to take in the first chunk, which therefore holds fewer splits.
+    Result<void> add_last_batch(
+        BitEncoder& bits, const PlannedLevel& level, std::uint64_t refinement
+    )
     {
         const auto& batch = level.batches.back();
         const auto plan = plan_splits(batch);
         VSPLIT_TRY(plan);
-        std::size_t left = batch.size();
-        std::size_t chunks = level.batches.size() > 1 ? 1 : chunk_count(left, refinement);
+        auto left = static_cast<std::uint32_t>(batch.size());
+        std::uint32_t chunks = level.batches.size() > 1 ? 1 : chunk_count(left, refinement);
         for (; chunks > 0; --chunks, refinement = 0)
         {
-            const std::size_t share = (split_bytes(left) + refinement) / chunks;
-            const std::size_t fitting = split_count(share - std::min(share, refinement));
-            const std::size_t count = chunks > 1 ? std::min(fitting, left) : left;
-            VSPLIT_TRY(add_splits(bits, batch, *plan, static_cast<std::uint32_t>(count)));
+            const std::uint32_t count =
+                chunks > 1 ? cost_.next_share(left, chunks, refinement) : left;
+            VSPLIT_TRY(add_splits(bits, batch, *plan, count));
             ByteWriter chunk;
             bits.finish(chunk);
-            if (count >= kTellingSplits)
-            {
-                // Refinement bits are left out: the next level has hardly any.
-                const std::size_t bytes = chunk.size() - std::min(chunk.size(), refinement);
-                bytes_per_split_ =
-                    std::max(0.25, static_cast<double>(bytes) / static_cast<double>(count));
-            }
             left -= count;
             add_chunk(proto::ChunkKind::Batch, chunk.view(), chunks == 1 ? &level : nullptr);
+            const std::uint32_t before = chunks_[chunks_.size() - 2].vertices;
+            cost_.observe(chunks_.back().vertices - before, chunks_.back().bytes, refinement);
         }
         return {};
     }
@@ -290,24 +300,18 @@ private:
         return {};
     }
 
-    /// Chunks to cut a level into: each may grow the file by a twelfth, so that prefixes come in fine
-    /// steps, but is not so small that its own bytes count, nor larger than the target.
-    std::size_t chunk_count(std::size_t splits, std::size_t refinement) const
+    /// Chunks to cut a level into: each may grow the prefix by a sixth while that is short, by a twelfth
+    /// later, so that prefixes come in fine steps; never beyond the target.
+    std::uint32_t chunk_count(std::uint32_t splits, std::uint64_t refinement) const
     {
+        const std::size_t prefix = kHeaderBytes + payload_.size();
         const std::size_t most = std::clamp<std::size_t>(
-            payload_.size() / 12, kSmallestChunkBytes, proto::kTargetChunkBytes * 9ULL / 10
+            prefix / 12,
+            std::min(prefix / 6, kSmallestChunkBytes),
+            proto::kTargetChunkBytes * 9ULL / 10
         );
-        return std::max<std::size_t>((split_bytes(splits) + refinement) / most, 1);
-    }
-
-    std::size_t split_bytes(std::size_t splits) const
-    {
-        return static_cast<std::size_t>(static_cast<double>(splits) * bytes_per_split_);
-    }
-
-    std::size_t split_count(std::size_t bytes) const
-    {
-        return static_cast<std::size_t>(static_cast<double>(bytes) / bytes_per_split_);
+        const std::uint64_t bytes = (cost_.bits_for(splits) + refinement) / 8;
+        return static_cast<std::uint32_t>(std::max<std::uint64_t>(bytes / most, 1));
     }
 
     void add_stitches()
@@ -342,15 +346,7 @@ private:
         info.face_count = state_.mesh.face_count();
         info.chunks = std::move(chunks_);
         info.content_checksum = content_checksum_;
-        std::array<std::int32_t, 3> extent{};
-        for (const auto& position : plan_.mesh->positions)
-        {
-            for (std::size_t axis = 0; axis < 3; ++axis)
-            {
-                extent[axis] = std::max(extent[axis], position[axis]);
-            }
-        }
-        std::vector<std::byte> file = write_stream_header(info, extent);
+        std::vector<std::byte> file = write_stream_header(info, extent_);
         const auto payload = payload_.view();
         file.insert(file.end(), payload.begin(), payload.end());
         return file;
@@ -365,7 +361,8 @@ private:
     std::vector<ChunkInfo> chunks_;
     ByteWriter payload_;
     std::uint32_t content_checksum_ = 0;
-    double bytes_per_split_ = 2.5;
+    std::array<std::int32_t, 3> extent_{};  ///< Largest index per axis.
+    SplitCost cost_;
 };
 
 }  // namespace

@@ -96,14 +96,13 @@ Result<void> skip_attributes(ByteReader& reader)
 Result<void> read_extent(BitDecoder& bits, StreamInfo& info)
 {
     const std::uint32_t full = bits.raw(0, 2);
-    std::array<std::int32_t, 3> extent{};
     for (std::uint32_t axis = 0; axis < 3; ++axis)
     {
-        extent[axis] = axis == full ? info.grid.max_index()
-                                    : static_cast<std::int32_t>(bits.raw(0, info.grid.bits));
+        info.extent[axis] = axis == full ? info.grid.max_index()
+                                         : static_cast<std::int32_t>(bits.raw(0, info.grid.bits));
     }
     info.box_min = dequantize(info.grid, {0, 0, 0});
-    info.box_max = dequantize(info.grid, extent);
+    info.box_max = dequantize(info.grid, info.extent);
     return std::isfinite(info.diagonal())
                ? Result<void>{}
                : fail(ErrorCode::BadHeader, "the bounding box is not finite");
@@ -164,7 +163,7 @@ private:
         {
             return fail(ErrorCode::BadHeader, "a row of the index is out of range");
         }
-        if (base && row.codec != 0)
+        if (base && row.codec > proto::kSmallBaseCodec)
         {
             return unknown_chunk(row);
         }

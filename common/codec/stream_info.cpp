@@ -13,8 +13,8 @@ double StreamInfo::diagonal() const
     double sum = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
-        const double extent = box_max[axis] - box_min[axis];
-        sum += extent * extent;
+        const double length = box_max[axis] - box_min[axis];
+        sum += length * length;
     }
     return std::sqrt(sum);
 }

@@ -58,7 +58,8 @@ struct StreamInfo
     std::uint8_t major = 0;
     std::uint8_t minor = 0;
     QuantizationGrid grid;
-    std::array<double, 3> box_min{};  ///< Bounding box of the quantised mesh, model units.
+    std::array<std::int32_t, 3> extent{};  ///< Largest grid index per axis; the smallest is 0.
+    std::array<double, 3> box_min{};       ///< Bounding box of the quantised mesh, model units.
     std::array<double, 3> box_max{};
     std::uint32_t vertex_count = 0;  ///< Vertices of the last level.
     std::uint32_t face_count = 0;    ///< Triangles of the last level.

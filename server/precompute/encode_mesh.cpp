@@ -1,10 +1,8 @@
 #include "precompute/encode_mesh.h"
 
 #include "codec/stream_encoder.h"
-#include "codec/stream_header_writer.h"
 #include "precompute/collapse_cost.h"
 #include "precompute/collapse_mesh.h"
-#include "precompute/concurrent_meter.h"
 #include "precompute/half_edge_mesh.h"
 #include "precompute/level_builder.h"
 #include "precompute/level_errors.h"
@@ -31,29 +29,35 @@ double lap(Clock::time_point& start)
     return seconds;
 }
 
-/// Base mesh to aim for: about a kilobyte, enough to recognise a shape.
-constexpr std::uint32_t kDefaultBaseVertices = 64;
+/// Most vertices of the base mesh to aim for, and fewest.
+constexpr double kMostBaseVertices = 64.0;
+constexpr double kFewestBaseVertices = 12.0;
+
+/// What header and index of a small mesh take, and a vertex of its base, bytes.
+constexpr double kHeaderBytes = 105.0;
+constexpr double kBaseVertexBytes = 2.4;
 
 /// Share of the vertices down to which levels are built for small files rather than for low error: the
 /// finest levels hold most of the vertices and hardly touch the picture at low rates.
 constexpr double kRegularShare = 0.45;
 
 /// Share of the vertices that a level below those removes: smaller follows the surface better, larger
-/// costs less, because each level takes about twenty bytes of its own.
+/// costs less, because each level takes about nine bytes of its own.
 constexpr double kCoarseShare = 0.2;
 
 /// Share of the vertices, the cheapest, that it may choose among. With stars that must not overlap a
 /// batch soon runs out of cheap ones, and one that should have stayed shows for the rest of the way.
 constexpr double kCoarseChoice = 0.5;
 
-/// Levels that make less progress than this end the sequence.
+/// Levels that make less progress than this end the sequence, unless there are but a few vertices.
 constexpr double kLeastShare = 0.02;
+constexpr std::size_t kFewVertices = 400;
 
 /// Vertices that a batch removes at least, as far as there are so many.
 constexpr std::size_t kSmallestBatch = 16;
 
 /// Splits that a level has at most when it joins several batches.
-constexpr std::size_t kSmallestLevel = 120;
+constexpr std::size_t kSmallestLevel = 30;
 
 bool is_made_for_coding(Metric metric)
 {
@@ -61,10 +65,20 @@ bool is_made_for_coding(Metric metric)
            metric == Metric::Quadrics;
 }
 
-/// The next number of vertices at which a level must end.
-std::size_t next_stop(const EncodeOptions& options, std::size_t vertices)
+/// Vertices of the base to aim for: as many as half a bit a vertex has room for behind the header, so that
+/// small meshes show something at low rates; to begin with more costs less than to begin with few.
+std::size_t default_base(std::size_t vertices)
 {
-    std::size_t stop = options.base_vertices != 0 ? options.base_vertices : kDefaultBaseVertices;
+    const double room = static_cast<double>(vertices) / 16.0 - kHeaderBytes;
+    return static_cast<std::size_t>(
+        std::clamp(room / kBaseVertexBytes, kFewestBaseVertices, kMostBaseVertices)
+    );
+}
+
+/// The next number of vertices, of `all`, at which a level must end.
+std::size_t next_stop(const EncodeOptions& options, std::size_t vertices, std::size_t all)
+{
+    std::size_t stop = options.base_vertices != 0 ? options.base_vertices : default_base(all);
     for (const std::uint32_t wanted : options.level_vertices)
     {
         if (wanted < vertices)
@@ -131,15 +145,7 @@ std::vector<std::uint8_t> lock_copies(std::span<const std::uint32_t> stitches)
     return locked;
 }
 
-/// Called with every batch as soon as it is known.
-using BatchSink = std::function<void(const std::vector<codec::Collapse>&)>;
-
-Sequence make_sequence(
-    Source& source,
-    const EncodeOptions& options,
-    const ProgressSink& progress,
-    const BatchSink& take_batch
-)
+Sequence make_sequence(Source& source, const EncodeOptions& options, const ProgressSink& progress)
 {
     const auto vertex_count = static_cast<std::uint32_t>(source.exact.size());
     CollapseMesh working(vertex_count, source.quantised.triangles);
@@ -147,22 +153,22 @@ Sequence make_sequence(
         options.metric, source.exact, working, std::move(source.weights), source.importance
     );
     LevelBuilder builder(working, cost, source.exact, source.locked, options.threads);
-    const std::size_t base = next_stop(options, 0);
+    const std::size_t base = next_stop(options, 0, vertex_count);
     Sequence sequence;
     bool choosy = true;
     while (builder.vertex_count() > base)
     {
         const std::size_t before = builder.vertex_count();
-        const std::size_t stop = next_stop(options, before);
+        const std::size_t stop = next_stop(options, before, vertex_count);
         LevelStyle style = style_for(options.metric, before, vertex_count);
         style.cheapest_share = choosy ? style.cheapest_share : 1.0;
         auto level = builder.next_level(style, before - stop);
         const bool arrived = before - level.size() == stop;
-        const bool slow = !arrived && static_cast<double>(level.size()) <
-                                          kLeastShare * static_cast<double>(before);
+        const double least =
+            before > kFewVertices ? kLeastShare * static_cast<double>(before) : 1.0;
+        const bool slow = !arrived && static_cast<double>(level.size()) < least;
         if (!level.empty())
         {
-            take_batch(level);
             sequence.levels.push_back({std::move(level)});
             sequence.starts.push_back(arrived ? 1 : 0);
         }
@@ -202,24 +208,25 @@ void order_levels(Sequence& sequence)
     sequence.levels = std::move(joined);
 }
 
-codec::StreamPlan make_plan(
-    Sequence& sequence, const Source& source, std::span<const LevelView> views
-)
+codec::StreamPlan make_plan(Sequence& sequence, const Source& source, std::span<LevelError> errors)
 {
+    const QuantizationGrid& grid = source.grid;
     codec::StreamPlan plan;
-    plan.grid = source.grid;
+    plan.grid = grid;
     plan.mesh = &source.quantised;
     plan.base_triangles = std::move(sequence.base);
     plan.stitches = source.stitches;
-    for (std::size_t level = 0; level < views.size(); ++level)
+    for (std::size_t level = 0; level < errors.size(); ++level)
     {
         codec::PlannedLevel planned;
         if (level > 0)
         {
-            planned.batches = sequence.levels[level - 1];  // the meter still reads them
+            planned.batches = std::move(sequence.levels[level - 1]);
         }
-        planned.shift = views[level].shift;
-        planned.displaced = views[level].displaced;
+        planned.shift = errors[level].shift;
+        planned.displaced = std::move(errors[level].displaced);
+        planned.rms_error = errors[level].distance.rms * grid.cell;
+        planned.max_error = errors[level].distance.max * grid.cell;
         plan.levels.push_back(std::move(planned));
     }
     return plan;
@@ -262,7 +269,6 @@ Result<Source> prepare(
     const IndexedMesh& mesh, std::span<const std::uint32_t> stitches, const EncodeOptions& options
 )
 {
-    VSPLIT_TRY(check_size(mesh));
     const auto order = locality_order(mesh.positions);
     const IndexedMesh ordered = in_order(mesh, order);
     Source source;
@@ -290,19 +296,6 @@ Result<Source> prepare(
     return source;
 }
 
-/// Puts the errors into a finished stream.
-Result<std::vector<std::byte>> with_errors(
-    std::span<const std::byte> file, std::span<const SurfaceDistance> distances, double cell
-)
-{
-    std::vector<codec::LevelErrors> errors;
-    for (const SurfaceDistance& distance : distances)
-    {
-        errors.push_back({distance.rms * cell, distance.max * cell});
-    }
-    return codec::replace_errors(file, errors);
-}
-
 /// Ties the share done to the name of its stage.
 std::function<void(double)> stage_progress(const ProgressSink& progress, std::string_view stage)
 {
@@ -314,57 +307,6 @@ std::function<void(double)> stage_progress(const ProgressSink& progress, std::st
     };
 }
 
-/// Encodes a mesh that is in order. `begin`: when the work on it began.
-Result<EncodedMesh> encode_source(
-    Source& source,
-    const EncodeOptions& options,
-    const ProgressSink& progress,
-    Clock::time_point begin
-)
-{
-    auto start = begin;
-    EncodedMesh result;
-    result.seconds.metric = lap(start);
-
-    ConcurrentMeter meter(
-        {.exact = source.exact,
-         .mesh = &source.quantised,
-         .locked = source.locked,
-         .bits = options.position_bits},
-        source.importance,
-        options.threads
-    );
-    Sequence sequence = make_sequence(source, options, progress, [&](const auto& batch) {
-        meter.take(
-            batch, batch.size() > kSmallestLevel
-        );  // others may be joined, see order_levels()
-    });
-    result.seconds.collapse = lap(start);
-
-    order_levels(sequence);
-    const auto measured = stage_progress(progress, "measure");
-    measured(0.0);
-    const auto views = meter.choose(sequence.levels);
-    measured(0.5);
-    meter.start_measuring(sequence.levels, views);
-    measured(1.0);
-    result.seconds.distance = lap(start);
-
-    auto plan = make_plan(sequence, source, views);
-    plan.training = options.training;
-    auto file = codec::encode_stream(plan, stage_progress(progress, "code"));
-    VSPLIT_TRY(file);
-    file = with_errors(*file, meter.result(), source.grid.cell);
-    VSPLIT_TRY(file);
-    result.file = std::move(*file);
-    auto info = codec::parse_stream_info(result.file);
-    VSPLIT_TRY(info);
-    result.info = std::move(*info);
-    result.seconds.code = lap(start);
-    result.seconds.total = std::chrono::duration<double>(Clock::now() - begin).count();
-    return result;
-}
-
 }  // namespace
 
 Result<EncodedMesh> encode_mesh(
@@ -374,24 +316,41 @@ Result<EncodedMesh> encode_mesh(
     const ProgressSink& progress
 )
 {
+    VSPLIT_TRY(check_size(mesh));
     const auto begin = Clock::now();
+    auto start = begin;
+    EncodedMesh result;
     auto source = prepare(mesh, stitches, options);
     VSPLIT_TRY(source);
-    return encode_source(*source, options, progress, begin);
-}
+    result.seconds.metric = lap(start);
 
-Result<EncodedMesh> encode_mesh(
-    IndexedMesh&& mesh,
-    std::span<const std::uint32_t> stitches,
-    const EncodeOptions& options,
-    const ProgressSink& progress
-)
-{
-    const auto begin = Clock::now();
-    auto source = prepare(mesh, stitches, options);
-    VSPLIT_TRY(source);
-    mesh = {};
-    return encode_source(*source, options, progress, begin);
+    Sequence sequence = make_sequence(*source, options, progress);
+    result.seconds.collapse = lap(start);
+
+    order_levels(sequence);
+    auto errors = measure_levels(
+        {.exact = source->exact,
+         .mesh = &source->quantised,
+         .locked = source->locked,
+         .bits = options.position_bits},
+        sequence.levels,
+        source->importance,
+        options.threads,
+        stage_progress(progress, "measure")
+    );
+    result.seconds.distance = lap(start);
+
+    auto plan = make_plan(sequence, *source, errors);
+    plan.training = options.training;
+    auto file = codec::encode_stream(plan, stage_progress(progress, "code"));
+    VSPLIT_TRY(file);
+    result.file = std::move(*file);
+    auto info = codec::parse_stream_info(result.file);
+    VSPLIT_TRY(info);
+    result.info = std::move(*info);
+    result.seconds.code = lap(start);
+    result.seconds.total = std::chrono::duration<double>(Clock::now() - begin).count();
+    return result;
 }
 
 }  // namespace vsplit::precompute

@@ -176,20 +176,23 @@ TEST_P(EveryStream, ShowsAManifoldAfterEveryChunk)
     }
 }
 
-TEST_P(EveryStream, ShowsOnlyVerticesOfTheSource)
+TEST_P(EveryStream, ShowsVerticesNearThoseOfTheSource)
 {
     const Decoded decoded = decode(sample().file);
     const auto& last = decoded.levels.back().mesh.positions;
+    // Coarse levels may show a vertex in another cell than its own, where the surface is better.
+    constexpr std::int32_t kFarthest = 16;
     int shift = 32;
     for (const Snapshot& shown : decoded.chunks)
     {
         EXPECT_LE(shown.shift, shift);
         shift = shown.shift;
+        const std::int32_t most = shift == 0 ? 0 : kFarthest;
         for (std::size_t v = 0; v < shown.mesh.positions.size(); ++v)
         {
             for (std::size_t axis = 0; axis < 3; ++axis)
             {
-                ASSERT_EQ(shown.mesh.positions[v][axis], last[v][axis] >> shift);
+                ASSERT_NEAR(shown.mesh.positions[v][axis], last[v][axis] >> shift, most);
             }
         }
     }

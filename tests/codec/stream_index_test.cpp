@@ -205,7 +205,7 @@ TEST(StreamIndex, RefusesUnknownRequiredKindsAndCodecs)
     info.chunks[1].codec = 1;
     EXPECT_EQ(code_of(write_header(info)), ErrorCode::UnknownRequiredChunk);
     info = sample_info();
-    info.chunks[0].codec = 1;
+    info.chunks[0].codec = 2;
     EXPECT_EQ(code_of(write_header(info)), ErrorCode::UnknownRequiredChunk);
 }
 

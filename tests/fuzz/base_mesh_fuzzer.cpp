@@ -1,12 +1,13 @@
 // Decodes hostile base meshes. The first four bytes are the counts that the index would promise, two
 // bytes each; if both are zero, those that the Draco stream itself begins with, so that more gets
-// through the first check.
+// through the first check. The top bit of the second count chooses the codec for small meshes.
 
 #include "codec/base_mesh_decoder.h"
 #include "codec/refinement_mesh.h"
 #include "core/byte_reader.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -18,6 +19,8 @@ using namespace vsplit;
 
 constexpr std::uint64_t kMostVertices = 4096;
 constexpr std::int32_t kMostIndex = (1 << 16) - 1;
+constexpr std::array<std::int32_t, 3> kExtent{63, 40, 21};
+constexpr unsigned kSmallCodec = 0x8000;
 
 void require(bool holds)
 {
@@ -64,7 +67,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         return 0;
     }
     const auto bytes = *reader.read_bytes(reader.remaining());
-    Counts counts{*vertices, *faces};
+    const bool small = (*faces & kSmallCodec) != 0;
+    Counts counts{*vertices, static_cast<std::uint32_t>(*faces & ~kSmallCodec)};
     if (counts.vertices == 0 && counts.faces == 0)
     {
         counts = own_counts(bytes);
@@ -73,7 +77,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     {
         return 0;
     }
-    const auto mesh = codec::decode_base_mesh(bytes, counts.vertices, counts.faces, kMostIndex);
+    const auto mesh =
+        small ? codec::decode_small_base(bytes, counts.vertices, counts.faces, kExtent)
+              : codec::decode_draco_base(bytes, counts.vertices, counts.faces, kMostIndex);
     if (!mesh)
     {
         require(mesh.error().code == ErrorCode::BadChunk);

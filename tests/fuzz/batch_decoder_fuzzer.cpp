@@ -40,7 +40,7 @@ test::StreamParts base_stream(const IndexedMesh& mesh)
     row.faces = static_cast<std::uint32_t>(base.triangles.size());
     row.shift = kBaseShift;
     parts.info.chunks.push_back(row);
-    parts.chunks.push_back(codec::encode_base_mesh(base).value().bytes);
+    parts.chunks.push_back(codec::encode_draco_base(base).value().bytes);
     return parts;
 }
 

@@ -14,6 +14,7 @@ import tempfile
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from stream_base import SmallBase  # noqa: E402
 from stream_index import BASE, BATCH, FIRST_OPTIONAL, STITCH, Stream, show_bytes  # noqa: E402
 from stream_models import BitStreams, Refusal, crc32c  # noqa: E402
 from stream_splits import Mesh, Splits  # noqa: E402
@@ -46,7 +47,7 @@ class Decoder:
         if self.options.trace:
             self.show_contents(row, contents)
         if row.kind == BASE:
-            self.decode_base(row.shift)
+            self.decode_base(row, contents)
         elif row.kind == BATCH:
             self.decode_batch(row, BitStreams(contents, self.options.trace))
         elif (row.kind, row.codec) == (STITCH, 0):
@@ -58,7 +59,8 @@ class Decoder:
             self.show_mesh()
 
     def show_contents(self, row, contents):
-        show_bytes(contents, "Draco mesh" if row.kind == BASE else "bit streams")
+        draco = (row.kind, row.codec) == (BASE, 0)
+        show_bytes(contents, "Draco mesh" if draco else "bit streams")
         show_bytes(self.stream.data[row.offset:row.offset + row.bytes][-4:], "checksum")
 
     def show_mesh(self):
@@ -69,9 +71,15 @@ class Decoder:
             for slot, triangle in enumerate(mesh.triangles()):
                 print(f"    triangle {slot}: {triangle}")
 
-    def decode_base(self, shift):
-        points, triangles = self.tool_mesh(0)
-        positions = [self.stream.grid_index(point, shift) for point in points]
+    def decode_base(self, row, contents):
+        shift = row.shift
+        if row.codec == 1:
+            extent = [size >> shift for size in self.stream.extent]
+            base = SmallBase(contents, row.vertices, row.faces, extent, self.options.trace)
+            positions, triangles = base.positions, base.triangles
+        else:
+            points, triangles = self.tool_mesh(0)
+            positions = [self.stream.grid_index(point, shift) for point in points]
         self.splits = Splits(Mesh(positions, triangles, self.stream.bits, shift))
 
     def decode_batch(self, row, bits):

@@ -2,6 +2,7 @@
 #include "codec/context_model.h"
 #include "codec/error_scale.h"
 #include "codec/initial_model.h"
+#include "codec/small_base_coder.h"
 #include "codec/stream_decoder.h"
 #include "core/byte_writer.h"
 #include "core/crc32c.h"
@@ -101,6 +102,10 @@ TEST(StreamFormatDocument, GivesTheConstantsOfTheCode)
         {"kSinglePrecisionGrid", kSinglePrecisionGrid},
         {"kHasAttributes", kHasAttributes},
         {"kFirstOptionalChunkKind", kFirstOptionalChunkKind},
+        {"kDracoBaseCodec", kDracoBaseCodec},
+        {"kSmallBaseCodec", kSmallBaseCodec},
+        {"kMaxSmallBaseVertices", kMaxSmallBaseVertices},
+        {"kMaxSmallBaseFaces", kMaxSmallBaseFaces},
         {"kCrc32cResidue", kCrc32cResidue},
         {"kErrorStepsPerOctave", kErrorStepsPerOctave},
         {"kZeroErrorCode", kZeroErrorCode},

@@ -58,9 +58,9 @@ def require(holds, name):
 class IndexInteger:
     """An integer model as an index begins with it."""
 
-    def __init__(self, x):
-        self.nonzero = [65536 - (40000 >> x), 5]
-        self.sign = [[32768, 5] for _ in range(3)]
+    def __init__(self, nonzero, x):
+        self.nonzero = [nonzero, 5]
+        self.sign = [[32768, 5], [32768, 5], [2048, 5]]
         self.prefix = [
             [52000 if e < x - 1 else 32768 if e < x else 16384, 5] for e in range(24)]
         self.mantissa = [[[32768, 24] for _ in range(3)] for _ in range(24)]
@@ -99,14 +99,15 @@ class Row:
 class Index:
     """The rows."""
 
-    def __init__(self, bits):
-        self.bits, self.rows, self.cost = bits, [], Cost()
+    def __init__(self, bits, position_bits):
+        self.bits, self.position_bits, self.rows, self.cost = bits, position_bits, [], Cost()
         self.other_kind, self.has_boundary = [2048, 4], [8192, 2]
         self.model = {
-            name: IndexInteger(x) for name, x in (
-                ("chunks of the level", 1), ("splits of the level", 2), ("drop of the shift", 0),
-                ("splits", 0), ("boundary splits", 1), ("bytes", 2), ("RMS error", 1),
-                ("maximum error", 2))}
+            name: IndexInteger(nonzero, x) for name, nonzero, x in (
+                ("chunks of the level", 28000, 0), ("splits of the level", 60000, 4),
+                ("drop of the shift", 20000, 0), ("splits", 2000, 0),
+                ("boundary splits", 56000, 2), ("bytes", 40000, 1), ("RMS error", 44000, 1),
+                ("maximum error", 56000, 2))}
         self.kind, self.chunks_left, self.level_chunks = (BATCH, 0), 0, 1
         self.boundary = (1, 4)
         count = self.number("chunks")
@@ -121,6 +122,10 @@ class Index:
     def number(self, name):
         width = self.bits.raw(5, name + ", digits")
         return width if width < 2 else 2 ** (width - 1) + self.bits.raw(width - 1, name)
+
+    def first_error(self, name):
+        code = self.bits.raw(6, name)
+        return code if code < 63 else self.bits.raw(9, name)
 
     def near(self, name, expected, fineness, most):
         raw = max(0, expected.bit_length() - fineness)
@@ -141,13 +146,14 @@ class Index:
     def base(self):
         raw = self.bits.raw
         row = Row(BASE, raw(2, "codec"))
-        if row.codec != 0:
+        if row.codec > 1:
             raise Refusal("unknown-required-chunk", "base codec")
         self.vertices = self.number("base vertices")
         closed = raw(1, "as many faces as a closed mesh")
         self.faces = 2 * self.vertices - 4 if closed else self.number("base faces")
         row.bytes, self.shift = self.number("base bytes"), raw(5, "base shift")
-        self.codes = [raw(9, "RMS error code"), raw(9, "maximum error code")]
+        self.codes = [self.first_error("RMS error code"), self.first_error("maximum error code")]
+        require(self.shift < self.position_bits, "base shift")
         require(3 <= self.vertices <= MAX_VERTICES, "base vertices")
         require(1 <= self.faces <= MAX_FACES, "base faces")
         require(max(self.codes) <= ZERO_ERROR, "error")
@@ -171,7 +177,7 @@ class Index:
     def batch(self, row):
         refinement = self.level() if self.chunks_left == 0 else 0
         splits = self.splits_left if self.chunks_left == 1 else self.near(
-            "splits", self.cost.share(self.splits_left, self.chunks_left, refinement), 6,
+            "splits", self.cost.share(self.splits_left, self.chunks_left, refinement), 16,
             self.splits_left)
         boundary = 0
         if self.bits.adaptive(self.has_boundary, "boundary splits"):
@@ -194,13 +200,14 @@ class Index:
         require(1 <= self.level_chunks <= MAX_CHUNKS, "chunks of the level")
         most = MAX_VERTICES - self.vertices
         expected = min(self.level_splits * self.vertices // self.level_start, most)
-        self.level_splits = self.near("splits of the level", expected, 4, most)
-        self.drop = self.bits.integer(self.model["drop of the shift"], 0, "drop of the shift")
+        self.level_splits = self.near("splits of the level", expected, 16, most)
+        self.drop = self.bits.integer(self.model["drop of the shift"], 2, "drop of the shift")
         require(0 <= self.drop <= self.shift, "drop of the shift")
+        refinement = (9 if self.shift >= 2 else 6) * self.vertices * self.drop // 2
         self.shift -= self.drop
         self.level_start = self.vertices
         self.chunks_left, self.splits_left = self.level_chunks, self.level_splits
-        return 3 * self.vertices * self.drop
+        return refinement
 
     def errors(self):
         before, maximum = self.codes
@@ -252,7 +259,7 @@ class Stream:
         self.extent = [
             2**self.bits - 1 if i == full else bits.raw(self.bits, f"extent {axis}")
             for i, axis in enumerate("xyz")]
-        self.rows = Index(bits).rows
+        self.rows = Index(bits, self.bits).rows
         bits.finish()
         for row in self.rows:
             row.offset = end
