@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace vsplit::codec {
 namespace {
@@ -178,6 +179,43 @@ std::vector<std::byte> write_stream_header(
     header.write_bytes(body.view());
     header.write(crc32c(header.view()));
     return header.take();
+}
+
+Result<std::vector<std::byte>> replace_errors(
+    std::span<const std::byte> file, std::span<const LevelErrors> errors
+)
+{
+    auto info = parse_stream_info(file);
+    VSPLIT_TRY(info);
+    std::size_t level = 0;
+    for (ChunkInfo& chunk : info->chunks)
+    {
+        if (is_optional(chunk.kind) || !chunk.ends_level)
+        {
+            continue;
+        }
+        if (level == errors.size())
+        {
+            return fail(ErrorCode::Internal, "the stream has more levels than errors");
+        }
+        chunk.rms_error = errors[level].rms;
+        chunk.max_error = errors[level].max;
+        ++level;
+    }
+    if (level != errors.size())
+    {
+        return fail(ErrorCode::Internal, "the stream has fewer levels than errors");
+    }
+    std::array<std::int32_t, 3> extent{};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        const double size = info->box_max[axis] - info->box_min[axis];
+        extent[axis] = static_cast<std::int32_t>(std::floor(size / info->grid.cell + 0.5));
+    }
+    std::vector<std::byte> result = write_stream_header(*info, extent);
+    const auto payload = file.subspan(info->header_bytes);
+    result.insert(result.end(), payload.begin(), payload.end());
+    return result;
 }
 
 }  // namespace vsplit::codec

@@ -1,8 +1,11 @@
 #pragma once
 
 #include "codec/stream_info.h"
+#include "core/result.h"
 
+#include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace vsplit::codec {
@@ -13,6 +16,20 @@ namespace vsplit::codec {
 /// the next 1/32 octave. Source: proto/STREAM_FORMAT.md, "Header" and "Index".
 [[nodiscard]] std::vector<std::byte> write_stream_header(
     const StreamInfo& info, const std::array<std::int32_t, 3>& extent
+);
+
+/// What the index says of a level.
+struct LevelErrors
+{
+    double rms = 0.0;  ///< Model units.
+    double max = 0.0;  ///< Model units.
+};
+
+/// Writes the header of a finished stream anew with other errors: they can then be measured while the
+/// stream is coded. `errors`: one entry a level. Result: the bytes that encode_stream() would have made.
+/// Errors: those of parse_stream_info(); Internal when the number of levels is another.
+[[nodiscard]] Result<std::vector<std::byte>> replace_errors(
+    std::span<const std::byte> file, std::span<const LevelErrors> errors
 );
 
 }  // namespace vsplit::codec

@@ -16,8 +16,8 @@ VERSION = 1
 def peer_files(peer, original, rates, keep, judge, cache):
     """By rate the files that come into question, judged: a list of {"bytes", "bits", "vertices",
     "faces", "rms", "max"}; empty where nothing fits. `keep`: how many the search keeps by each
-    distance, for the judge to choose from."""
-    key = content_hash("peer", VERSION, judge.version, peer, original, rates, keep)
+    distance, for the judge to choose from (rms, Hausdorff)."""
+    key = content_hash("peer", VERSION, judge.version, peer, original, rates, *keep)
     return cache.get(key, lambda: search(peer, original, rates, keep, judge))
 
 
@@ -25,7 +25,7 @@ def search(peer, original, rates, keep, judge):
     with tempfile.TemporaryDirectory(prefix="vsplit-bench-") as folder:
         listed = ",".join(str(rate) for rate in rates)
         found = Run(programs.BENCH_LOD, peer, original, folder, "--rates", listed,
-                    "--keep", keep).json()
+                    "--keep-by-rms", keep[0], "--keep-by-max", keep[1]).json()
         for row in found["rates"]:
             for file in row["files"]:
                 file.update(judge.measure(original, pathlib.Path(folder) / file.pop("file")))

@@ -6,6 +6,7 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 BUILD = ROOT / "build/bench"
@@ -13,6 +14,7 @@ VSPLIT = BUILD / "bin/vsplit"
 BENCH_LOD = BUILD / "bin/bench_lod"
 DECODE_SPEED = BUILD / "bin/decode_speed"
 BENCH_DISTANCE = BUILD / "bin/bench_distance"
+MAKE_BIG_MESH = BUILD / "bin/make_big_mesh"
 MESHDIST = BUILD / "meshdist"
 MESHDIST_SOURCE = ROOT.parent / "shared/tools/meshdist.cpp"
 CGAL = BUILD / "cgal/usr/include"
@@ -33,9 +35,11 @@ class Run:
     def __init__(self, *arguments):
         self.command = [str(argument) for argument in arguments]
         with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
+            started = time.monotonic()
             process = subprocess.Popen(self.command, stdin=subprocess.DEVNULL, stdout=out, stderr=err)
             _, status, usage = os.wait4(process.pid, 0)
             process.returncode = self.status = os.waitstatus_to_exitcode(status)
+            self.wall_seconds = time.monotonic() - started
             self.peak_bytes = usage.ru_maxrss * 1024
             self.cpu_seconds = usage.ru_utime + usage.ru_stime
             out.seek(0)

@@ -1,12 +1,10 @@
 """Bytes, and what the first bytes of a stream show."""
 
-import pathlib
-
 from . import peers, programs
 from .programs import Failed, Run
 
 RATES = [0.5, 1, 2, 4]
-CURVE_RATES = [0.25, 0.35, 0.7, 1.4, 2.8, 5.6, 8, 11]
+CURVE_RATES = [0.25, 0.35, 0.7, 1.4, 2.8, 5.6, 8, 12, 16]
 
 
 def encode(original, folder):
@@ -19,10 +17,14 @@ def encode(original, folder):
     inspected = Run(programs.VSPLIT, "inspect", stream, "--json", "-").json()
     if draco["vertices"] != report["vertices"]:
         raise Failed(f"{original}: Draco was given another mesh")
+    mesh, coded = folder / f"{original.stem}-whole.ply", folder / f"{original.stem}.drc"
+    Run(programs.VSPLIT, "decode", stream, "-o", mesh).good()
+    Run("draco_encoder", "-i", mesh, "-o", coded, "-cl", 10, "-qp", 12).good()
     return {
         "name": original.stem, "original": original, "stream": stream,
         "vertices": report["vertices"], "faces": report["faces"],
         "bytes": report["bytes"], "draco_bytes": draco["draco_bytes"],
+        "draco_encoder_bytes": coded.stat().st_size,
         "header_bytes": report["header_bytes"],
         "first_image_bytes": report["levels"][0]["cumulative_bytes"],
         "chunks": inspected["chunks"],
@@ -55,21 +57,30 @@ def prefix_budgets(record, with_curve):
     return budgets
 
 
-def measure(original, folder, judge, cache, with_curve, pool):
-    """The record of a model, with its prefixes and its peers' files. Runs programs through `pool`."""
-    record = encode(original, folder)
-    budgets = prefix_budgets(record, with_curve)
-    shown = pool.map(lambda row: {
-        "rate": row[0], **shown_by_prefix(record, row[1], judge, folder)}, budgets)
-    searches = [(peer, rates, keep) for peer in peers.PEERS
-                for rates, keep in [(RATES, 2)] + [(CURVE_RATES, 1)] * with_curve]
-    found = pool.map(lambda row: (row[0], peers.peer_files(
-        row[0], pathlib.Path(original), row[1], row[2], judge, cache)), searches)
-    record["prefixes"] = list(shown)
-    record["peers"] = {peer: [] for peer in peers.PEERS}
-    for peer, result in found:
-        if result["vertices"] != record["vertices"]:
-            raise Failed(f"{original}: {peer} was given another mesh")
-        record["peers"][peer] += [file for row in result["rates"] for file in row["files"]]
-    programs.note(f"{record['name']}: {record['bytes']} bytes, Draco {record['draco_bytes']}")
-    return record
+def measure(originals, folder, judge, cache, with_curve, pool):
+    """The records of all models, with their prefixes and their peers' files; programs run through
+    `pool`, so that none of its threads is idle before the last one."""
+    records = list(pool.map(lambda original: encode(original, folder), originals))
+    searches = [(RATES, (2, 2))] + [(CURVE_RATES, (1, 0))] * with_curve
+    for record in records:
+        record["prefixes"] = [
+            (rate, pool.submit(shown_by_prefix, record, budget, judge, folder))
+            for rate, budget in prefix_budgets(record, with_curve)]
+        record["peers"] = {
+            peer: [pool.submit(peers.peer_files, peer, record["original"], rates, keep, judge, cache)
+                   for rates, keep in searches] for peer in peers.PEERS}
+    for record in records:
+        collect(record)
+        programs.note(f"{record['name']}: {record['bytes']} bytes, Draco {record['draco_bytes']}")
+    return records
+
+
+def collect(record):
+    """Waits for what measure() has started for a model."""
+    record["prefixes"] = [{"rate": rate, **shown.result()} for rate, shown in record["prefixes"]]
+    for peer, found in record["peers"].items():
+        results = [future.result() for future in found]
+        if any(result["vertices"] != record["vertices"] for result in results):
+            raise Failed(f"{record['original']}: {peer} was given another mesh")
+        record["peers"][peer] = [
+            file for result in results for row in result["rates"] for file in row["files"]]

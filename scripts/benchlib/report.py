@@ -83,6 +83,28 @@ def left_out_list(models):
     return "\n".join(lines) or "None."
 
 
+SUMMARY_MODELS = ["dragon-100k", "homer", "horse", "rocker-arm", "skull", "stanford-bunny"]
+
+
+def summary_table(models):
+    """The README's table: what a reader wants to know first, one row a model."""
+    shown = [model for model in models if model["name"] in SUMMARY_MODELS] or models
+    rows = []
+    for model in shown:
+        rms = [next(row["rms"] for row in model["prefixes"] if row["rate"] == rate)
+               for rate in (1, 2, 4)]
+        decode, encode = model.get("decode"), model.get("encode")
+        rows.append([
+            model["name"], model["vertices"], model["first_image_bytes"],
+            " / ".join(number(value) for value in rms),
+            number(8 * model["bytes"] / model["vertices"], 1),
+            number(8 * model["draco_bytes"] / model["vertices"], 1),
+            number(decode and model["vertices"] / decode["seconds"]["vsplit"] / 1e6, 2),
+            number(encode and model["vertices"] / encode["seconds"] / 1e3, 0)])
+    return table(["model", "vertices", "first image, bytes", "rms at 1 / 2 / 4 bpv, %", "total, bpv",
+                  "Draco, bpv", "decode, M vertices/s", "encode, k vertices/s"], sorted(rows))
+
+
 def write_csv(path, head, rows):
     with open(path, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
@@ -92,9 +114,10 @@ def write_csv(path, head, rows):
 
 def write_rate_csv(folder, models):
     write_csv(folder / "sizes.csv", ["model", "vertices", "faces", "vsplit_bytes", "draco_bytes",
-                                     "first_image_bytes"],
+                                     "draco_encoder_bytes", "first_image_bytes"],
               [[model["name"], model["vertices"], model["faces"], model["bytes"],
-                model["draco_bytes"], model["first_image_bytes"]] for model in models])
+                model["draco_bytes"], model["draco_encoder_bytes"], model["first_image_bytes"]]
+               for model in models])
     head = ["model", "coder", "rate", "bytes", "vertices", "faces", "bits", "rms_percent",
             "max_percent"]
     rows = []

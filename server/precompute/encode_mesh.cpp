@@ -1,8 +1,10 @@
 #include "precompute/encode_mesh.h"
 
 #include "codec/stream_encoder.h"
+#include "codec/stream_header_writer.h"
 #include "precompute/collapse_cost.h"
 #include "precompute/collapse_mesh.h"
+#include "precompute/concurrent_meter.h"
 #include "precompute/half_edge_mesh.h"
 #include "precompute/level_builder.h"
 #include "precompute/level_errors.h"
@@ -145,7 +147,15 @@ std::vector<std::uint8_t> lock_copies(std::span<const std::uint32_t> stitches)
     return locked;
 }
 
-Sequence make_sequence(Source& source, const EncodeOptions& options, const ProgressSink& progress)
+/// Called with every batch as soon as it is known.
+using BatchSink = std::function<void(const std::vector<codec::Collapse>&)>;
+
+Sequence make_sequence(
+    Source& source,
+    const EncodeOptions& options,
+    const ProgressSink& progress,
+    const BatchSink& take_batch
+)
 {
     const auto vertex_count = static_cast<std::uint32_t>(source.exact.size());
     CollapseMesh working(vertex_count, source.quantised.triangles);
@@ -169,6 +179,7 @@ Sequence make_sequence(Source& source, const EncodeOptions& options, const Progr
         const bool slow = !arrived && static_cast<double>(level.size()) < least;
         if (!level.empty())
         {
+            take_batch(level);
             sequence.levels.push_back({std::move(level)});
             sequence.starts.push_back(arrived ? 1 : 0);
         }
@@ -208,25 +219,24 @@ void order_levels(Sequence& sequence)
     sequence.levels = std::move(joined);
 }
 
-codec::StreamPlan make_plan(Sequence& sequence, const Source& source, std::span<LevelError> errors)
+codec::StreamPlan make_plan(
+    Sequence& sequence, const Source& source, std::span<const LevelView> views
+)
 {
-    const QuantizationGrid& grid = source.grid;
     codec::StreamPlan plan;
-    plan.grid = grid;
+    plan.grid = source.grid;
     plan.mesh = &source.quantised;
     plan.base_triangles = std::move(sequence.base);
     plan.stitches = source.stitches;
-    for (std::size_t level = 0; level < errors.size(); ++level)
+    for (std::size_t level = 0; level < views.size(); ++level)
     {
         codec::PlannedLevel planned;
         if (level > 0)
         {
-            planned.batches = std::move(sequence.levels[level - 1]);
+            planned.batches = sequence.levels[level - 1];  // the meter still reads them
         }
-        planned.shift = errors[level].shift;
-        planned.displaced = std::move(errors[level].displaced);
-        planned.rms_error = errors[level].distance.rms * grid.cell;
-        planned.max_error = errors[level].distance.max * grid.cell;
+        planned.shift = views[level].shift;
+        planned.displaced = views[level].displaced;
         plan.levels.push_back(std::move(planned));
     }
     return plan;
@@ -269,6 +279,7 @@ Result<Source> prepare(
     const IndexedMesh& mesh, std::span<const std::uint32_t> stitches, const EncodeOptions& options
 )
 {
+    VSPLIT_TRY(check_size(mesh));
     const auto order = locality_order(mesh.positions);
     const IndexedMesh ordered = in_order(mesh, order);
     Source source;
@@ -296,6 +307,19 @@ Result<Source> prepare(
     return source;
 }
 
+/// Puts the errors into a finished stream.
+Result<std::vector<std::byte>> with_errors(
+    std::span<const std::byte> file, std::span<const SurfaceDistance> distances, double cell
+)
+{
+    std::vector<codec::LevelErrors> errors;
+    for (const SurfaceDistance& distance : distances)
+    {
+        errors.push_back({distance.rms * cell, distance.max * cell});
+    }
+    return codec::replace_errors(file, errors);
+}
+
 /// Ties the share done to the name of its stage.
 std::function<void(double)> stage_progress(const ProgressSink& progress, std::string_view stage)
 {
@@ -307,6 +331,57 @@ std::function<void(double)> stage_progress(const ProgressSink& progress, std::st
     };
 }
 
+/// Encodes a mesh that is in order. `begin`: when the work on it began.
+Result<EncodedMesh> encode_source(
+    Source& source,
+    const EncodeOptions& options,
+    const ProgressSink& progress,
+    Clock::time_point begin
+)
+{
+    auto start = begin;
+    EncodedMesh result;
+    result.seconds.metric = lap(start);
+
+    ConcurrentMeter meter(
+        {.exact = source.exact,
+         .mesh = &source.quantised,
+         .locked = source.locked,
+         .bits = options.position_bits},
+        source.importance,
+        options.threads
+    );
+    Sequence sequence = make_sequence(source, options, progress, [&](const auto& batch) {
+        meter.take(
+            batch, batch.size() > kSmallestLevel
+        );  // others may be joined, see order_levels()
+    });
+    result.seconds.collapse = lap(start);
+
+    order_levels(sequence);
+    const auto measured = stage_progress(progress, "measure");
+    measured(0.0);
+    const auto views = meter.choose(sequence.levels);
+    measured(0.5);
+    meter.start_measuring(sequence.levels, views);
+    measured(1.0);
+    result.seconds.distance = lap(start);
+
+    auto plan = make_plan(sequence, source, views);
+    plan.training = options.training;
+    auto file = codec::encode_stream(plan, stage_progress(progress, "code"));
+    VSPLIT_TRY(file);
+    file = with_errors(*file, meter.result(), source.grid.cell);
+    VSPLIT_TRY(file);
+    result.file = std::move(*file);
+    auto info = codec::parse_stream_info(result.file);
+    VSPLIT_TRY(info);
+    result.info = std::move(*info);
+    result.seconds.code = lap(start);
+    result.seconds.total = std::chrono::duration<double>(Clock::now() - begin).count();
+    return result;
+}
+
 }  // namespace
 
 Result<EncodedMesh> encode_mesh(
@@ -316,41 +391,24 @@ Result<EncodedMesh> encode_mesh(
     const ProgressSink& progress
 )
 {
-    VSPLIT_TRY(check_size(mesh));
     const auto begin = Clock::now();
-    auto start = begin;
-    EncodedMesh result;
     auto source = prepare(mesh, stitches, options);
     VSPLIT_TRY(source);
-    result.seconds.metric = lap(start);
+    return encode_source(*source, options, progress, begin);
+}
 
-    Sequence sequence = make_sequence(*source, options, progress);
-    result.seconds.collapse = lap(start);
-
-    order_levels(sequence);
-    auto errors = measure_levels(
-        {.exact = source->exact,
-         .mesh = &source->quantised,
-         .locked = source->locked,
-         .bits = options.position_bits},
-        sequence.levels,
-        source->importance,
-        options.threads,
-        stage_progress(progress, "measure")
-    );
-    result.seconds.distance = lap(start);
-
-    auto plan = make_plan(sequence, *source, errors);
-    plan.training = options.training;
-    auto file = codec::encode_stream(plan, stage_progress(progress, "code"));
-    VSPLIT_TRY(file);
-    result.file = std::move(*file);
-    auto info = codec::parse_stream_info(result.file);
-    VSPLIT_TRY(info);
-    result.info = std::move(*info);
-    result.seconds.code = lap(start);
-    result.seconds.total = std::chrono::duration<double>(Clock::now() - begin).count();
-    return result;
+Result<EncodedMesh> encode_mesh(
+    IndexedMesh&& mesh,
+    std::span<const std::uint32_t> stitches,
+    const EncodeOptions& options,
+    const ProgressSink& progress
+)
+{
+    const auto begin = Clock::now();
+    auto source = prepare(mesh, stitches, options);
+    VSPLIT_TRY(source);
+    mesh = {};
+    return encode_source(*source, options, progress, begin);
 }
 
 }  // namespace vsplit::precompute

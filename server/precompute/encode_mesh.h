@@ -37,8 +37,9 @@ struct EncodeSeconds
 {
     double metric = 0.0;    ///< Curvature and other precomputed vertex values.
     double collapse = 0.0;  ///< Collapse sequence.
-    double distance = 0.0;  ///< Error of every level.
-    double code = 0.0;      ///< Prediction and entropy coding.
+    double distance =
+        0.0;            ///< How levels are shown and their errors, as far as not beside the others.
+    double code = 0.0;  ///< Prediction and entropy coding.
     double total = 0.0;
 };
 
@@ -58,10 +59,18 @@ struct EncodedMesh
 /// Precondition: options.importance has one number a vertex, or none.
 /// Errors: EmptyMesh, InputTooLarge, BadIndex and UnsupportedInput (not such a mesh; see
 /// check_manifold()), Internal (the result failed its own check).
-/// Cost: about 30 microseconds and 500 bytes a vertex. Deterministic: the same input and options
+/// Cost: about 12 microseconds and 400 bytes a vertex, with several threads 550 bytes. Deterministic: the same input and options
 /// give the same bytes for any number of threads. Thread safe.
 [[nodiscard]] Result<EncodedMesh> encode_mesh(
     const IndexedMesh& mesh,
+    std::span<const std::uint32_t> stitches,
+    const EncodeOptions& options,
+    const ProgressSink& progress = {}
+);
+
+/// The same, but takes the mesh over and lets go of it as soon as it can: 48 bytes a vertex less.
+[[nodiscard]] Result<EncodedMesh> encode_mesh(
+    IndexedMesh&& mesh,
     std::span<const std::uint32_t> stitches,
     const EncodeOptions& options,
     const ProgressSink& progress = {}

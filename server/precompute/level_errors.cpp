@@ -81,56 +81,12 @@ void drop_fixed_triangles(PlacedLevel& level, std::vector<std::uint8_t>& is_free
     }
 }
 
-/// Chooses the shift of every level and finds the levels to place, coarsest first.
-std::vector<PlacedLevel> choose_shifts(
-    ErrorTracker& tracker,
-    std::span<const LevelBatches> levels,
-    const PlacementSource& source,
-    std::vector<LevelError>& errors
-)
-{
-    std::vector<PlacedLevel> placed;
-    std::vector<std::uint8_t> is_free(source.exact.size(), 0);
-    std::size_t vertices = source.exact.size();
-    for (std::size_t i = levels.size(); i-- > 0;)
-    {
-        PlacedLevel level;
-        level.level = i + 1;
-        level.shift = errors[i + 1].shift;
-        const bool worth = is_worth_placing(vertices, source.exact.size(), level.shift);
-        if (worth)
-        {
-            level.triangles = tracker.triangles();
-        }
-        collapse(tracker, levels[i]);
-        std::vector<std::uint32_t> removed = removed_vertices(levels[i]);
-        vertices -= removed.size();
-        const int shift = shift_for(telling_error(tracker.follow()), source.bits);
-        errors[i].shift = std::max(level.shift, shift);
-        if (worth)
-        {
-            if (errors[i].shift == level.shift)
-            {
-                level.free = std::move(removed);
-                drop_fixed_triangles(level, is_free);
-            }
-            placed.push_back(std::move(level));
-        }
-    }
-    if (is_worth_placing(vertices, source.exact.size(), errors.front().shift))
-    {
-        placed.push_back({0, errors.front().shift, tracker.triangles(), {}});
-    }
-    std::ranges::reverse(placed);
-    return placed;
-}
-
 /// The cells that the vertices of a level are shown in, and of the coarser ones with the same shift.
 std::vector<std::array<std::int32_t, 3>> shown_cells(
-    const GridMesh& mesh, std::span<const LevelError> errors, std::size_t level
+    const GridMesh& mesh, std::span<const LevelView> views, std::size_t level
 )
 {
-    const int shift = errors[level].shift;
+    const int shift = views[level].shift;
     auto cells = mesh.positions;
     for (auto& cell : cells)
     {
@@ -139,9 +95,9 @@ std::vector<std::array<std::int32_t, 3>> shown_cells(
             coordinate >>= shift;
         }
     }
-    for (std::size_t i = level + 1; i-- > 0 && errors[i].shift == shift;)
+    for (std::size_t i = level + 1; i-- > 0 && views[i].shift == shift;)
     {
-        for (const codec::Displacement& displacement : errors[i].displaced)
+        for (const codec::Displacement& displacement : views[i].displaced)
         {
             cells[displacement.vertex] = displacement.position;
         }
@@ -151,42 +107,86 @@ std::vector<std::array<std::int32_t, 3>> shown_cells(
 
 }  // namespace
 
-std::vector<LevelError> measure_levels(
-    const PlacementSource& source,
-    std::span<const LevelBatches> levels,
-    std::span<const float> importance,
-    unsigned threads,
-    const std::function<void(double)>& progress
+LevelMeter::LevelMeter(
+    const PlacementSource& source, std::span<const float> importance, unsigned threads
+)
+    : source_(source),
+      threads_(threads),
+      tracker_(source.exact, *source.mesh, importance, threads),
+      shifts_(1, 0),
+      is_free_(source.exact.size(), 0),
+      vertices_(source.exact.size())
+{
+    source_.tree = &tracker_.tree();
+}
+
+void LevelMeter::add(const LevelBatches& level)
+{
+    const int shift = shifts_.back();
+    PlacedLevel finer;
+    finer.level = shifts_.size() - 1;
+    finer.shift = shift;
+    const bool worth = is_worth_placing(vertices_, source_.exact.size(), shift);
+    if (worth)
+    {
+        finer.triangles = tracker_.triangles();
+    }
+    collapse(tracker_, level);
+    std::vector<std::uint32_t> removed = removed_vertices(level);
+    vertices_ -= removed.size();
+    shifts_.push_back(std::max(shift, shift_for(telling_error(tracker_.follow()), source_.bits)));
+    if (worth)
+    {
+        if (shifts_.back() == shift)
+        {
+            finer.free = std::move(removed);
+            drop_fixed_triangles(finer, is_free_);
+        }
+        placed_.push_back(std::move(finer));
+    }
+}
+
+std::vector<LevelView> LevelMeter::choose()
+{
+    const std::size_t last = shifts_.size() - 1;
+    if (is_worth_placing(vertices_, source_.exact.size(), shifts_.back()))
+    {
+        placed_.push_back({last, shifts_.back(), tracker_.triangles(), {}});
+    }
+    std::ranges::reverse(placed_);
+    std::vector<LevelView> views(shifts_.size());
+    for (std::size_t i = 0; i < views.size(); ++i)
+    {
+        views[i].shift = shifts_[last - i];
+    }
+    auto displaced = place_levels(source_, placed_, threads_);
+    for (std::size_t i = 0; i < displaced.size(); ++i)
+    {
+        views[last - placed_[i].level].displaced = std::move(displaced[i]);
+    }
+    placed_ = {};
+    return views;
+}
+
+std::vector<SurfaceDistance> LevelMeter::measure(
+    std::span<const LevelBatches> levels, std::span<const LevelView> views
 )
 {
-    ErrorTracker tracker(source.exact, *source.mesh, importance, threads);
-    std::vector<LevelError> errors(levels.size() + 1);
-    PlacementSource with_tree = source;
-    with_tree.tree = &tracker.tree();
-    const auto to_place = choose_shifts(tracker, levels, source, errors);
-    auto placed = place_levels(with_tree, to_place, threads);
-    for (std::size_t i = 0; i < placed.size(); ++i)
-    {
-        errors[to_place[i].level].displaced = std::move(placed[i]);
-    }
-    tracker.restart();
-    auto cells = source.mesh->positions;
-    errors.back().distance = tracker.measure(0, cells);
+    tracker_.restart();
+    std::vector<SurfaceDistance> distances(views.size());
+    auto cells = source_.mesh->positions;
+    distances.back() = tracker_.measure(0, cells);
     for (std::size_t i = levels.size(); i-- > 0;)
     {
-        collapse(tracker, levels[i]);
-        static_cast<void>(tracker.follow());
-        if (errors[i].shift != errors[i + 1].shift)
+        collapse(tracker_, levels[i]);
+        static_cast<void>(tracker_.follow());
+        if (views[i].shift != views[i + 1].shift)
         {
-            cells = shown_cells(*source.mesh, errors, i);
+            cells = shown_cells(*source_.mesh, views, i);
         }
-        errors[i].distance = tracker.measure(errors[i].shift, cells);
-        if (progress)
-        {
-            progress(1.0 - static_cast<double>(i) / static_cast<double>(levels.size()));
-        }
+        distances[i] = tracker_.measure(views[i].shift, cells);
     }
-    return errors;
+    return distances;
 }
 
 }  // namespace vsplit::precompute

@@ -219,7 +219,7 @@ Result<void> encode(const EncodeArguments& arguments, bool speak, EncodeOutcome&
     EncodeOptions options = arguments.options;
     options.importance = std::move(outcome.repaired.importance);
     auto encoded = precompute::encode_mesh(
-        outcome.repaired.mesh,
+        std::move(outcome.repaired.mesh),
         outcome.repaired.stitches,
         options,
         [&](std::string_view stage, double share) { bar.show(stage, share); }

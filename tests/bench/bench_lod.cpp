@@ -95,7 +95,8 @@ int main(int argc, char** argv)
     app.add_option("--rates", arguments.rates, "Bits per vertex of the original")
         ->required()
         ->delimiter(',');
-    app.add_option("--keep", arguments.search.keep, "Files to keep at each rate, by each distance");
+    app.add_option("--keep-by-rms", arguments.search.keep_by_rms, "Files to keep at each rate");
+    app.add_option("--keep-by-max", arguments.search.keep_by_max, "Files to keep at each rate");
     CLI11_PARSE(app, argc, argv);
     const auto done = vsplit::bench::run(arguments);
     if (!done)

@@ -145,15 +145,16 @@ private:
     std::vector<LodFile> pick(std::vector<Key> tried) const
     {
         std::vector<LodFile> picked;
-        for (const auto figure : {&LodFile::rms, &LodFile::max})
-        {
-            for (std::size_t i = 0; i < options_.keep && !tried.empty(); ++i)
+        const auto take_best = [&](std::size_t count, double LodFile::*figure) {
+            for (std::size_t i = 0; i < count && !tried.empty(); ++i)
             {
                 const Key key = best(tried, figure);
                 picked.push_back(files_.at(key));
                 std::erase(tried, key);
             }
-        }
+        };
+        take_best(options_.keep_by_rms, &LodFile::rms);
+        take_best(options_.keep_by_max, &LodFile::max);
         return picked;
     }
 

@@ -27,7 +27,8 @@ struct LodSearchOptions
     int fewest_bits = 5;
     int most_bits = 12;
     std::size_t samples = 60000;  ///< Points a side for the distances that choose.
-    std::size_t keep = 2;         ///< Files to keep by rms, and as many by Hausdorff distance.
+    std::size_t keep_by_rms = 2;  ///< Files to keep for their rms.
+    std::size_t keep_by_max = 2;  ///< Files to keep for their Hausdorff distance.
 };
 
 /// Looks for the best single files of at most so many bytes.
@@ -38,9 +39,9 @@ public:
     LodSearch(const IndexedMesh& mesh, LodLadder& ladder, const LodSearchOptions& options);
     ~LodSearch();
 
-    /// For every number of bits takes the largest levels whose file fits, measures them, and keeps the
-    /// best ones: `keep` with the least rms, then `keep` with the least Hausdorff distance, without
-    /// repetition. Result: empty when nothing fits. Errors: those of Draco.
+    /// For every number of bits takes the largest levels whose file fits, measures them, and keeps those
+    /// with the least rms, then those with the least Hausdorff distance, without repetition.
+    /// Result: empty when nothing fits. Errors: those of Draco.
     [[nodiscard]] Result<std::vector<LodFile>> best_files(std::size_t bytes);
 
 private:

@@ -72,6 +72,20 @@ class TablesTest(unittest.TestCase):
         self.assertAlmostEqual(tables.growth(rows, "s"), 1.2)
         self.assertIsNone(tables.growth(rows[:1], "s"))
 
+    def test_cutting_bytes_count_only_chunks_within_levels(self):
+        def chunk(size, vertices, ends_level):
+            return {"bytes": size, "vertices": vertices, "ends_level": ends_level}
+
+        whole = [chunk(200, 100, True), chunk(9000, 5000, True)]
+        self.assertEqual(tables.cutting_bytes(whole), 0)
+        cut = [chunk(200, 100, True), chunk(4500, 227, False), chunk(4500, 5000, True)]
+        # A length of 18000 takes three groups of seven bits, 127 splits take one.
+        self.assertEqual(tables.cutting_bytes(cut), tables.BYTES_PER_CUT + 3 + 1)
+
+    def test_varint_bytes_are_groups_of_seven_bits(self):
+        lengths = [tables.varint_bytes(value) for value in (0, 1, 127, 128, 16383, 16384)]
+        self.assertEqual(lengths, [1, 1, 1, 2, 2, 3])
+
     def test_median_is_the_middle(self):
         self.assertEqual(tables.median([3, 1, 2]), 2)
         self.assertIsNone(tables.median([]))
@@ -86,6 +100,30 @@ class GoalsTest(unittest.TestCase):
         self.assertEqual(mean["verdict"], "short")
         self.assertEqual((worst["value"], worst["verdict"]), (2.0, "short"))
         self.assertIn("bad", worst["measured"])
+
+    def test_time_and_memory_goals_are_about_the_larger_meshes_and_the_worst_of_them(self):
+        def timed(name, vertices, ratio, heap, seconds):
+            return dict(
+                model({}, [], vertices), name=name,
+                decode={"ratio": ratio, "heap_peak_bytes": {"vsplit": heap, "draco": 1}},
+                encode={"vertices": vertices, "seconds": seconds, "memory": 1000 * vertices})
+
+        models = [timed("small", 19_999, 9.0, 1e9, 99.0), timed("one", 20_000, 1.5, 1e6, 0.1),
+                  timed("two", 40_000, 0.9, 3.2e6, 0.5)]
+        ratio, heap = goals.decode_rows(models)
+        self.assertEqual((ratio["value"], ratio["verdict"]), (1.5, "reached"))
+        self.assertEqual((heap["value"], heap["verdict"]), (80, "reached"))
+        speed, memory = goals.encode_rows(models)
+        self.assertAlmostEqual(speed["value"], 80)
+        self.assertEqual((memory["value"], memory["verdict"]), (1000, "short"))
+        self.assertEqual(list(goals.decode_rows(models[:1])), [])
+
+    def test_chunk_rows_name_the_largest(self):
+        whole = [{"bytes": 70_000, "vertices": 5, "ends_level": True}]
+        models = [dict(model({}, []), name="big", chunks=whole)]
+        largest, cutting = goals.chunk_rows(models, None)
+        self.assertEqual((largest["value"], largest["verdict"]), (70_000, "short"))
+        self.assertEqual((cutting["value"], cutting["verdict"]), (0.0, "reached"))
 
     def test_distance_rows_count_the_points_left_out(self):
         shown = model({1: lod(90, 0.3, 2.0), 2: lod(190, 0.3, 2.0)}, [lod(90, 0.6, 4.0)])
