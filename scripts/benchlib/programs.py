@@ -30,7 +30,7 @@ class Failed(Exception):
 
 
 class Run:
-    """A finished program: exit status (negative for a signal), output, errors, memory, time."""
+    """A finished program: exit status (negative for a signal), output, errors, time."""
 
     def __init__(self, *arguments):
         self.command = [str(argument) for argument in arguments]
@@ -40,7 +40,6 @@ class Run:
             _, status, usage = os.wait4(process.pid, 0)
             process.returncode = self.status = os.waitstatus_to_exitcode(status)
             self.wall_seconds = time.monotonic() - started
-            self.peak_bytes = usage.ru_maxrss * 1024
             self.cpu_seconds = usage.ru_utime + usage.ru_stime
             out.seek(0)
             err.seek(0)

@@ -33,7 +33,11 @@ def decoding(models):
 
 
 def encode_once(path, stream, threads=1):
-    return Run(programs.VSPLIT, "encode", path, "-o", stream, "--threads", threads, "--quiet").good()
+    """A finished encode. Its own report says how much memory it took: what the system says of a child
+    process includes what this one had before."""
+    run = Run(programs.VSPLIT, "encode", path, "-o", stream, "--threads", threads, "--json", "-")
+    run.peak_bytes = run.json()["peak_memory_bytes"]
+    return run
 
 
 def empty_run(folder):

@@ -11,10 +11,12 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <string>
-#include <sys/resource.h>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -56,11 +58,20 @@ struct EncodeOutcome
     ToolSeconds seconds;
 };
 
+/// Most memory that was resident at once. Not taken from getrusage(), which includes what the program
+/// that started this one had resident before it became this one.
 std::uint64_t peak_memory_bytes()
 {
-    rusage usage{};
-    ::getrusage(RUSAGE_SELF, &usage);
-    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024U;
+    constexpr std::string_view kField = "VmHWM:";
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);)
+    {
+        if (line.starts_with(kField))
+        {
+            return std::strtoull(line.c_str() + kField.size(), nullptr, 10) * 1024U;
+        }
+    }
+    return 0;
 }
 
 Json seconds_json(const EncodeOutcome& outcome)
