@@ -253,7 +253,8 @@ private:
         const auto plan = plan_splits(batch);
         VSPLIT_TRY(plan);
         auto left = static_cast<std::uint32_t>(batch.size());
-        std::uint32_t chunks = level.batches.size() > 1 ? 1 : chunk_count(left, refinement);
+        const bool whole = level.batches.size() > 1 || !plan_.cut_levels;
+        std::uint32_t chunks = whole ? 1 : chunk_count(left, refinement);
         for (; chunks > 0; --chunks, refinement = 0)
         {
             const std::uint32_t count =

@@ -57,6 +57,7 @@ struct StreamPlan
     /// back in it. The stream is then not decodable.
     LearnedModel* training = nullptr;
     std::span<const std::uint32_t> stitches;  ///< As EncodedMesh's; empty when nothing was cut.
+    bool cut_levels = true;                   ///< False: one chunk a level, however long.
 };
 
 /// Codes a plan. `progress`: called with the share done, 0 .. 1.

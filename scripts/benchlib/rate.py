@@ -13,6 +13,8 @@ def encode(original, folder):
     report = Run(programs.VSPLIT, "encode", original, "-o", stream, "--threads", 1,
                  "--json", "-").json()
     Run(programs.VSPLIT, "verify", stream, "--against", original).good()
+    uncut = Run(programs.VSPLIT, "encode", original, "-o", folder / f"{original.stem}-uncut.vsplit",
+                "--uncut", "--json", "-").json()
     draco = Run(programs.DECODE_SPEED, stream, "--rounds", 0).json()[0]
     inspected = Run(programs.VSPLIT, "inspect", stream, "--json", "-").json()
     if draco["vertices"] != report["vertices"]:
@@ -25,7 +27,7 @@ def encode(original, folder):
         "vertices": report["vertices"], "faces": report["faces"],
         "bytes": report["bytes"], "draco_bytes": draco["draco_bytes"],
         "draco_encoder_bytes": coded.stat().st_size,
-        "header_bytes": report["header_bytes"],
+        "header_bytes": report["header_bytes"], "uncut_bytes": uncut["bytes"],
         "first_image_bytes": report["levels"][0]["cumulative_bytes"],
         "chunks": inspected["chunks"],
     }

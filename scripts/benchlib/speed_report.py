@@ -1,9 +1,8 @@
 """The report's sections about time, memory and chunks."""
 
 from . import report
-from .goals import heap_per_vertex
+from .goals import cutting_cost, heap_per_vertex
 from .report import number, table
-from .tables import cutting_bytes
 
 
 def decode_section(models):
@@ -75,12 +74,11 @@ def chunk_section(models):
         cuts = sum(not chunk["ends_level"] for chunk in model["chunks"])
         rows.append([model["name"], len(model["chunks"]), cuts,
                      max(chunk["bytes"] for chunk in model["chunks"]),
-                     number(100 * cutting_bytes(model["chunks"]) / model["bytes"], 2)])
+                     number(cutting_cost(model), 2)])
     return [
         "", "## Chunks", "",
-        "Levels are cut into chunks, so that every chunk is a step that can be shown. The cost of the "
-        "cuts is an estimate from above: the chunk's row in the index, its checksum, the ends of its "
-        "bit streams and its prediction weights.", "",
+        "Levels are cut into chunks, so that every chunk is a step that can be shown. The cost is that "
+        "of the cuts within levels, against the stream that `vsplit encode --uncut` makes.", "",
         table(["model", "chunks", "cuts within levels", "largest, bytes", "cost of cuts, %"], rows),
     ]
 

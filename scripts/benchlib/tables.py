@@ -66,28 +66,6 @@ def growth(rows, figure):
     return max(value / per_vertex[0] for value in per_vertex[1:])
 
 
-# What a cut costs apart from its row in the index, at most: the checksum (4), lengths and ends of the
-# two bit streams (4), a set of prediction weights (5).
-BYTES_PER_CUT = 13
-
-
-def cutting_bytes(chunks):
-    """About how many bytes a stream would save if no level were cut: every chunk that does not end
-    its level costs a row of the index (two variable-length integers) and BYTES_PER_CUT."""
-    total, vertices = 0, 0
-    for chunk in chunks:
-        if not chunk["ends_level"]:
-            splits = chunk["vertices"] - vertices
-            total += BYTES_PER_CUT + varint_bytes(4 * chunk["bytes"]) + varint_bytes(splits)
-        vertices = chunk["vertices"]
-    return total
-
-
-def varint_bytes(value):
-    """Length of an integer in groups of seven bits."""
-    return max(1, -(-value.bit_length() // 7))
-
-
 def median(values):
     """The middle value (the upper of two); None of nothing."""
     values = sorted(values)

@@ -369,6 +369,7 @@ Result<EncodedMesh> encode_source(
 
     auto plan = make_plan(sequence, source, views);
     plan.training = options.training;
+    plan.cut_levels = options.cut_levels;
     auto file = codec::encode_stream(plan, stage_progress(progress, "code"));
     VSPLIT_TRY(file);
     file = with_errors(*file, meter.result(), source.grid.cell);

@@ -26,7 +26,8 @@ struct EncodeOptions
     std::vector<float> importance{};
     /// For training only, see codec::StreamPlan::training.
     codec::LearnedModel* training = nullptr;
-    unsigned threads = 1;  ///< Worker threads, at least 1; the bytes do not depend on it.
+    bool cut_levels = true;  ///< False: one chunk a level, however long; to see what the cuts cost.
+    unsigned threads = 1;    ///< Worker threads, at least 1; the bytes do not depend on it.
 };
 
 /// Called now and then with the stage's name and its share done, 0 .. 1; from the encoding thread.

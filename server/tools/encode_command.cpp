@@ -331,6 +331,11 @@ void add_encode_command(CLI::App& app, Result<void>& result)
         "Keep vertices longest by a text file with one number, 0 .. 1, for each vertex of IN"
     );
     constexpr unsigned kMostThreads = 256;
+    command->add_flag(
+        "--uncut{false}",
+        options.cut_levels,
+        "Give every level one chunk, however long; to see what cutting costs"
+    );
     command->add_option("--threads", options.threads, "Worker threads; do not change the result")
         ->check(CLI::Range(1U, kMostThreads))
         ->capture_default_str();

@@ -16,7 +16,7 @@ def lod(size, rms, largest=1.0):
 
 def model(prefixes, files, vertices=800):
     return {
-        "name": "thing", "vertices": vertices, "bytes": 1100, "draco_bytes": 1000,
+        "name": "thing", "vertices": vertices, "bytes": 1100, "draco_bytes": 1000, "uncut_bytes": 1000,
         "prefixes": [{"rate": rate, **shown} for rate, shown in prefixes.items()],
         "peers": {"meshopt": files, "lindstrom-turk": files},
     }
@@ -72,20 +72,6 @@ class TablesTest(unittest.TestCase):
         self.assertAlmostEqual(tables.growth(rows, "s"), 1.2)
         self.assertIsNone(tables.growth(rows[:1], "s"))
 
-    def test_cutting_bytes_count_only_chunks_within_levels(self):
-        def chunk(size, vertices, ends_level):
-            return {"bytes": size, "vertices": vertices, "ends_level": ends_level}
-
-        whole = [chunk(200, 100, True), chunk(9000, 5000, True)]
-        self.assertEqual(tables.cutting_bytes(whole), 0)
-        cut = [chunk(200, 100, True), chunk(4500, 227, False), chunk(4500, 5000, True)]
-        # A length of 18000 takes three groups of seven bits, 127 splits take one.
-        self.assertEqual(tables.cutting_bytes(cut), tables.BYTES_PER_CUT + 3 + 1)
-
-    def test_varint_bytes_are_groups_of_seven_bits(self):
-        lengths = [tables.varint_bytes(value) for value in (0, 1, 127, 128, 16383, 16384)]
-        self.assertEqual(lengths, [1, 1, 1, 2, 2, 3])
-
     def test_median_is_the_middle(self):
         self.assertEqual(tables.median([3, 1, 2]), 2)
         self.assertIsNone(tables.median([]))
@@ -123,7 +109,8 @@ class GoalsTest(unittest.TestCase):
         models = [dict(model({}, []), name="big", chunks=whole)]
         largest, cutting = goals.chunk_rows(models, None)
         self.assertEqual((largest["value"], largest["verdict"]), (70_000, "short"))
-        self.assertEqual((cutting["value"], cutting["verdict"]), (0.0, "reached"))
+        self.assertAlmostEqual(cutting["value"], 10)
+        self.assertEqual(cutting["verdict"], "short")
 
     def test_distance_rows_count_the_points_left_out(self):
         shown = model({1: lod(90, 0.3, 2.0), 2: lod(190, 0.3, 2.0)}, [lod(90, 0.6, 4.0)])

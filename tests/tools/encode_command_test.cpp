@@ -230,6 +230,19 @@ TEST_F(EncodeCommand, ObeysMetricPositionBitsAndBaseVertices)
     }
 }
 
+TEST_F(EncodeCommand, GivesEveryLevelOneChunkWhenUncut)
+{
+    const std::string input = std::string(VSPLIT_SOURCE_DIR) + "/assets/beast.ply";
+    ASSERT_EQ(run({"encode", input, "-o", path("cut.vsplit"), "--quiet"}).status, 0);
+    ASSERT_EQ(run({"encode", input, "-o", path("uncut.vsplit"), "--quiet", "--uncut"}).status, 0);
+    EXPECT_EQ(run({"verify", path("uncut.vsplit"), "--against", input}).status, 0);
+    const auto cut = run({"inspect", path("cut.vsplit"), "--json", "-"}).json();
+    const auto uncut = run({"inspect", path("uncut.vsplit"), "--json", "-"}).json();
+    EXPECT_GT(cut["chunks"].size(), cut["levels"].size());
+    EXPECT_EQ(uncut["chunks"].size(), uncut["levels"].size());
+    EXPECT_EQ(uncut["levels"].size(), cut["levels"].size());
+}
+
 TEST_F(EncodeCommand, ReplacesAnOldOutputButNeverItsInput)
 {
     ASSERT_TRUE(precompute::write_mesh(path("torus.ply"), bumpy_torus()));
