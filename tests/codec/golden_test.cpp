@@ -1,59 +1,28 @@
 // Streams that once were made must decode to the same meshes for ever, on every machine.
 
 #include "codec/golden_streams.h"
+#include "codec/mesh_digest.h"
 #include "codec/stream_parts.h"
-#include "core/byte_writer.h"
-#include "core/crc32c.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <fstream>
-#include <iomanip>
 #include <sstream>
 
 namespace vsplit::test {
 namespace {
 
-/// CRC-32C of a list's numbers, 32 bits each, little-endian.
-template <typename List>
-std::uint32_t checksum(const List& rows)
-{
-    ByteWriter bytes;
-    for (const auto& row : rows)
-    {
-        for (const auto number : row)
-        {
-            bytes.write(static_cast<std::uint32_t>(number));
-        }
-    }
-    return crc32c(bytes.view());
-}
-
-/// What a stream decodes to: one line a level, then one for the stitches if there are any.
+/// What a stream decodes to, the text of tests/golden/NAME.txt.
 std::string describe_meshes(const Decoded& decoded)
 {
-    std::ostringstream out;
-    out << std::setfill('0') << "level vertices faces shift positions triangles\n";
-    const auto hex = [](std::uint32_t number) {
-        std::ostringstream text;
-        text << std::hex << std::setw(8) << std::setfill('0') << number;
-        return text.str();
-    };
+    std::string text = kDigestHead;
     for (const Snapshot& level : decoded.levels)
     {
-        out << level.level << ' ' << level.mesh.positions.size() << ' '
-            << level.mesh.triangles.size() << ' ' << level.shift << ' '
-            << hex(checksum(level.mesh.positions)) << ' ' << hex(checksum(level.mesh.triangles))
-            << '\n';
+        text += describe_level(level.level, level.shift, level.mesh);
     }
-    if (!decoded.stitches.empty())
-    {
-        const std::vector<std::vector<std::uint32_t>> rows{decoded.stitches};
-        out << "stitches " << hex(checksum(rows)) << '\n';
-    }
-    return out.str();
+    return text + describe_stitches(decoded.stitches);
 }
 
 std::string read_text(const std::string& path)
