@@ -165,7 +165,7 @@ def stream_part(results):
                     if row["model"] == model.name and row["metric"] == metric]
             lines += ["", f"### Table {next(numerals)}: {model.name}, {STREAM_METRICS[metric]}", "",
                       stream_table(rows)]
-    lines += ["", text.frame_rates(results["streams"])]
+    lines += ["", text.frame_rates(results["streams"]) + " " + text.streams(results["streams"])]
     for model in results["models"]:
         rows = [row for row in results["streams"] if row["model"] == model.name]
         lines += ["", f"### {model.name}: the other metrics beside them", "", beside_table(rows)]

@@ -123,6 +123,28 @@ def frame_rates(rows):
             f"{100 * spread:.0f} % of each other.")
 
 
+def streams(rows, metric="curvature", other="normal"):
+    """What one metric's prefixes take and show over another's, level by level."""
+    by_stream = {}
+    for row in rows:
+        by_stream.setdefault((row["model"], row["metric"]), []).append(row)
+    pairs = {}
+    for (model, name), stream in by_stream.items():
+        beside = by_stream.get((model, other))
+        if name != metric or not beside:
+            continue
+        ordered = [sorted(each, key=lambda row: -row["vertices"]) for each in (stream, beside)]
+        for level, (row, peer) in enumerate(zip(*ordered)):
+            pairs.setdefault(level, []).append(
+                (row["stream_bytes"] / peer["stream_bytes"], row["rms"] / peer["rms"]))
+    parts = []
+    for level, values in sorted(pairs.items()):
+        size, rms = (geometric_mean(each) for each in zip(*values))
+        parts.append(f"{size:.2f} times the bytes and {rms:.2f} times the rms "
+                     + (f"at level {level}" if level else "as a whole"))
+    return f"The {metric} metric's streams over the {other} metric's: {listed(parts)}."
+
+
 def ranking(rows, names, against="vsplit-curvature"):
     """Every method's rms over vsplit's, the best first."""
     means = {method: geometric_mean(ratios(rows, "rms", method, against).values())

@@ -90,6 +90,15 @@ class Words(unittest.TestCase):
         self.assertIn("2.0 times the original's rate at level 1", text)
         self.assertIn("within 10 % of each other", text)
 
+    def test_streams_are_compared_level_by_level(self):
+        rows = [{"model": "cow", "metric": metric, "vertices": vertices, "rms": scale / vertices,
+                 "stream_bytes": vertices * (10 if metric == "normal" else 8)}
+                for metric, scale in (("curvature", 3.0), ("normal", 2.0)) for vertices in (100, 50)]
+        self.assertEqual(
+            paper_text.streams(rows),
+            "The curvature metric's streams over the normal metric's: 0.80 times the bytes and 1.50 "
+            "times the rms as a whole and 0.80 times the bytes and 1.50 times the rms at level 1.")
+
     def test_ranking_puts_the_best_method_first(self):
         text = paper_text.ranking(rule_rows(2.0), paper_measure.METHODS)
         names = paper_measure.METHODS
