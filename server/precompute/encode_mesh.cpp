@@ -31,9 +31,12 @@ double lap(Clock::time_point& start)
     return seconds;
 }
 
-/// Most vertices of the base mesh to aim for, and fewest.
-constexpr double kMostBaseVertices = 64.0;
+/// Vertices of the base mesh to aim for: fewest; most where they fill the bytes of half a bit a vertex;
+/// most where they fill a share of them.
 constexpr double kFewestBaseVertices = 12.0;
+constexpr double kSmallBaseVertices = 64.0;
+constexpr double kMostBaseVertices = 128.0;
+constexpr double kBaseShare = 0.6;
 
 /// What header and index of a small mesh take, and a vertex of its base, bytes.
 constexpr double kHeaderBytes = 105.0;
@@ -71,10 +74,12 @@ bool is_made_for_coding(Metric metric)
 /// small meshes show something at low rates; to begin with more costs less than to begin with few.
 std::size_t default_base(std::size_t vertices)
 {
-    const double room = static_cast<double>(vertices) / 16.0 - kHeaderBytes;
-    return static_cast<std::size_t>(
-        std::clamp(room / kBaseVertexBytes, kFewestBaseVertices, kMostBaseVertices)
+    const double bytes = static_cast<double>(vertices) / 16.0;
+    const double fitting = std::clamp(
+        (bytes - kHeaderBytes) / kBaseVertexBytes, kFewestBaseVertices, kSmallBaseVertices
     );
+    const double ample = (bytes * kBaseShare - kHeaderBytes) / kBaseVertexBytes;
+    return static_cast<std::size_t>(std::max(fitting, std::min(ample, kMostBaseVertices)));
 }
 
 /// The next number of vertices, of `all`, at which a level must end.
