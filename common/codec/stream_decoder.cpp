@@ -110,32 +110,25 @@ private:
         VSPLIT_TRY(info);
         info_ = std::move(*info);
         consume_unit();
-        try
-        {
-            reserve(prefix_info(*info_, limits_.max_level));
-        }
-        catch (const std::bad_alloc&)  // the limits allow more than there is
-        {
-            return fail(ErrorCode::LimitExceeded, "there is not enough memory for the mesh");
-        }
+        state_.bits = info_->grid.bits;
+        const std::uint32_t longest = largest_chunk(prefix_info(*info_, limits_.max_level)).bytes;
+        VSPLIT_TRY(take_memory([&] { buffer_.reserve(longest); }));
         return current(StepKind::Header);
     }
 
-    void reserve(const StreamInfo& info)
+    /// Runs what allocates within the limits: they may allow more than there is.
+    template <typename Allocate>
+    static Result<void> take_memory(const Allocate& allocate)
     {
-        std::uint32_t largest_batch = 0;
-        std::uint32_t largest_chunk = 0;
-        std::uint32_t vertices = info.chunks.front().vertices;
-        for (const ChunkInfo& chunk : info.chunks)
+        try
         {
-            largest_chunk = std::max(largest_chunk, chunk.bytes);
-            largest_batch = std::max(largest_batch, chunk.vertices - vertices);
-            vertices = chunk.vertices;
+            allocate();
         }
-        state_.bits = info.grid.bits;
-        state_.mesh.reserve(info.vertex_count, info.face_count);
-        state_.splits.reserve(largest_batch);
-        buffer_.reserve(largest_chunk);
+        catch (const std::bad_alloc&)
+        {
+            return fail(ErrorCode::LimitExceeded, "there is not enough memory for the mesh");
+        }
+        return {};
     }
 
     Result<Step> decode_chunk()
@@ -204,6 +197,12 @@ private:
         state_.shift = chunk.shift;
         const auto base = decode_base_mesh(chunk, bytes);
         VSPLIT_TRY(base);
+        // Not before Draco has given its own memory back.
+        VSPLIT_TRY(take_memory([&] {
+            const StreamInfo info = prefix_info(*info_, limits_.max_level);
+            state_.mesh.reserve(info.vertex_count, info.face_count);
+            state_.splits.reserve(largest_chunk(info).splits);
+        }));
         VSPLIT_TRY(state_.mesh.set_base(*base, state_.max_index()));
         updates_.show_all();
         step.first_new_vertex = 0;

@@ -42,9 +42,9 @@ struct Step
 /// Turns the bytes of a stream, as they come, into a mesh that gets finer. Vertices are appended and
 /// keep their index; triangles keep their slot. After an error every further call gives the same
 /// error and the mesh stays readable: the last good one where a checksum failed; where a chunk
-/// contradicts itself, a valid one that may already hold a part of it. Memory is reserved once, when
-/// the header is known, and checked against the limits before that. Not thread safe. Safe on untrusted
-/// input. Never throws on data. Source: proto/STREAM_FORMAT.md.
+/// contradicts itself, a valid one that may already hold a part of it. The limits
+/// are checked when the header is known; memory is taken then for the longest chunk and, when the base
+/// is decoded, once for all of the mesh. Not thread safe. Safe on untrusted input. Never throws on data. Source: proto/STREAM_FORMAT.md.
 class StreamDecoder
 {
 public:

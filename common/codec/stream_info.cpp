@@ -78,29 +78,40 @@ StreamInfo prefix_info(const StreamInfo& info, std::uint32_t level)
     return prefix;
 }
 
-std::uint64_t decoder_heap_bytes(const StreamInfo& info)
+LargestChunk largest_chunk(const StreamInfo& info)
 {
-    std::uint64_t largest_chunk = 0;
-    std::uint32_t largest_batch = 0;
-    std::uint32_t previous = 0;
-    std::uint64_t stitched = 0;
+    LargestChunk largest;
+    std::uint32_t vertices = info.chunks.front().vertices;
     for (const ChunkInfo& chunk : info.chunks)
     {
-        stitched = chunk.kind == proto::ChunkKind::Stitch ? info.vertex_count : stitched;
-        largest_chunk = std::max<std::uint64_t>(largest_chunk, chunk.bytes);
-        largest_batch = std::max(largest_batch, chunk.vertices - previous);
-        previous = chunk.vertices;
+        largest.bytes = std::max(largest.bytes, chunk.bytes);
+        largest.splits = std::max(largest.splits, chunk.vertices - vertices);
+        vertices = chunk.vertices;
     }
-    // Per vertex: position and valence; its stitch, its place in their order, one class of its own. Per
-    // face: connectivity. Per split of the largest chunk: where it is. Per vertex of the base what
-    // Draco needs besides the tables of its entropy coder. The constant covers the learned model and
-    // small things.
-    constexpr std::uint64_t kFixed = 128U * 1024U;
+    return largest;
+}
+
+std::uint64_t decoder_heap_bytes(const StreamInfo& info)
+{
+    const bool stitched = std::ranges::any_of(info.chunks, [](const ChunkInfo& chunk) {
+        return chunk.kind == proto::ChunkKind::Stitch;
+    });
+    const LargestChunk largest = largest_chunk(info);
+    // The base first: per vertex what Draco needs besides the tables of its entropy coder.
     const ChunkInfo& base = info.chunks.front();
     const auto max_index = static_cast<std::uint32_t>(info.grid.max_index());
-    return kFixed + BaseMeshTables::of(base.vertices, max_index).heap_bytes() +
-           512ULL * std::max(base.vertices, base.faces / 2) + 14ULL * info.vertex_count +
-           12ULL * stitched + 32ULL * info.face_count + 8ULL * largest_batch + largest_chunk +
+    const std::uint64_t draco = BaseMeshTables::of(base.vertices, max_index).heap_bytes() +
+                                512ULL * std::max(base.vertices, base.faces / 2);
+    // Then, beside the decoded base, the tables that link it. Per vertex: position and valence; its
+    // stitch, its place in their order, one class of its own. Per face: connectivity. Per split of the
+    // largest chunk: where it is.
+    const std::uint64_t mesh = 20ULL * base.vertices + 60ULL * base.faces +
+                               14ULL * info.vertex_count +
+                               12ULL * (stitched ? info.vertex_count : 0) +
+                               32ULL * info.face_count + 8ULL * largest.splits;
+    // The learned model and small things.
+    constexpr std::uint64_t kFixed = 128U * 1024U;
+    return kFixed + std::max(draco, mesh) + largest.bytes +
            sizeof(ChunkInfo) * info.chunks.size() * 2;
 }
 

@@ -124,6 +124,16 @@ struct StopCondition
 /// later levels are left out. A level beyond the last gives `info` itself. Cost: linear in the index.
 [[nodiscard]] StreamInfo prefix_info(const StreamInfo& info, std::uint32_t level);
 
+/// What of a stream's chunks is the largest.
+struct LargestChunk
+{
+    std::uint32_t bytes = 0;
+    std::uint32_t splits = 0;
+};
+
+/// The longest chunk, and the most splits of one.
+[[nodiscard]] LargestChunk largest_chunk(const StreamInfo& info);
+
 /// Returns an upper bound of the heap that a StreamDecoder needs for the whole stream, bytes; for a
 /// decoder with DecodeLimits::max_level ask with prefix_info().
 [[nodiscard]] std::uint64_t decoder_heap_bytes(const StreamInfo& info);
