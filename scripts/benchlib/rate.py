@@ -1,6 +1,7 @@
 """Bytes, and what the first bytes of a stream show."""
 
 from . import peers, programs
+from .judge import CURVE_SAMPLES, SAMPLES
 from .programs import Failed, Run
 
 RATES = [0.5, 1, 2, 4]
@@ -33,10 +34,10 @@ def encode(original, folder):
     }
 
 
-def shown_by_prefix(record, budget, judge, folder):
+def shown_by_prefix(record, budget, samples, judge, folder):
     """What a client that has the first `budget` bytes shows: the stream is really cut there, and
     decoded. Without a complete base mesh "rms" and "max" are None."""
-    name = f"{record['name']}-{budget}"
+    name = f"{record['name']}-{budget}-{samples}"
     cut, shown = folder / f"{name}.vsplit", folder / f"{name}.ply"
     cut.write_bytes(record["stream"].read_bytes()[:budget])
     run = Run(programs.VSPLIT, "decode", cut, "-o", shown, "--json", "-")
@@ -45,17 +46,17 @@ def shown_by_prefix(record, budget, judge, folder):
     if run.status == 0:
         decoded = run.json()
         row.update(bytes=decoded["bytes_used"], vertices=decoded["vertices"], faces=decoded["faces"])
-        row.update(judge.distance(record["original"], shown))
+        row.update(judge.distance(record["original"], shown, samples))
         shown.unlink()
     return row
 
 
 def prefix_budgets(record, with_curve):
-    """(rate or None, bytes) of the prefixes to look at: the four rates, and every chunk's end."""
-    budgets = [(rate, int(rate * record["vertices"] / 8)) for rate in RATES]
+    """(rate or None, bytes, samples) of the prefixes to look at: the four rates, every chunk's end."""
+    budgets = [(rate, int(rate * record["vertices"] / 8), SAMPLES) for rate in RATES]
     if with_curve:
-        budgets += [(None, chunk["offset"] + chunk["bytes"]) for chunk in record["chunks"]
-                    if chunk["kind"] != "stitch"]
+        budgets += [(None, chunk["offset"] + chunk["bytes"], CURVE_SAMPLES)
+                    for chunk in record["chunks"] if chunk["kind"] != "stitch"]
     return budgets
 
 
@@ -63,14 +64,16 @@ def measure(originals, folder, judge, cache, with_curve, pool):
     """The records of all models, with their prefixes and their peers' files; programs run through
     `pool`, so that none of its threads is idle before the last one."""
     records = list(pool.map(lambda original: encode(original, folder), originals))
-    searches = [(RATES, (2, 2))] + [(CURVE_RATES, (1, 0))] * with_curve
+    searches = [(RATES, (2, 2), SAMPLES)]
+    searches += [(CURVE_RATES, (1, 0), CURVE_SAMPLES)] * with_curve
     for record in records:
         record["prefixes"] = [
-            (rate, pool.submit(shown_by_prefix, record, budget, judge, folder))
-            for rate, budget in prefix_budgets(record, with_curve)]
+            (rate, pool.submit(shown_by_prefix, record, budget, samples, judge, folder))
+            for rate, budget, samples in prefix_budgets(record, with_curve)]
         record["peers"] = {
-            peer: [pool.submit(peers.peer_files, peer, record["original"], rates, keep, judge, cache)
-                   for rates, keep in searches] for peer in peers.PEERS}
+            peer: [pool.submit(peers.peer_files, peer, record["original"], rates, keep, judge, cache,
+                               samples) for rates, keep, samples in searches]
+            for peer in peers.PEERS}
     for record in records:
         collect(record)
         programs.note(f"{record['name']}: {record['bytes']} bytes, Draco {record['draco_bytes']}")
@@ -84,5 +87,7 @@ def collect(record):
         results = [future.result() for future in found]
         if any(result["vertices"] != record["vertices"] for result in results):
             raise Failed(f"{record['original']}: {peer} was given another mesh")
+        # The first search is the one that counts; the others are for the curves.
         record["peers"][peer] = [
-            file for result in results for row in result["rates"] for file in row["files"]]
+            {**file, "counts": result is results[0]}
+            for result in results for row in result["rates"] for file in row["files"]]

@@ -30,7 +30,7 @@ def envelope(files, figure="rms"):
 def point(model, rate, peer):
     """What vsplit's prefix and the peer's best files show in the bytes of `rate` bits a vertex."""
     budget = int(rate * model["vertices"] / 8)
-    files = model["peers"][peer]
+    files = [file for file in model["peers"][peer] if file["counts"]]
     shown = next((prefix for prefix in model["prefixes"] if prefix["rate"] == rate), None)
     return {
         "model": model["name"], "rate": rate, "peer": peer, "budget": budget,

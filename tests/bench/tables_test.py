@@ -11,7 +11,7 @@ from benchlib import goals, tables
 
 
 def lod(size, rms, largest=1.0):
-    return {"bytes": size, "rms": rms, "max": largest}
+    return {"bytes": size, "rms": rms, "max": largest, "counts": True}
 
 
 def model(prefixes, files, vertices=800):
@@ -48,6 +48,11 @@ class TablesTest(unittest.TestCase):
         self.assertEqual(tables.ratios([at_1], "rms"), ([0.5], []))
         self.assertEqual(tables.ratios([at_1], "max"), ([2.0], []))
         self.assertEqual(tables.ratios([at_1], "max", "least_max"), ([3.0], []))
+
+    def test_files_that_are_only_drawn_do_not_count(self):
+        files = [lod(100, 0.2), dict(lod(90, 0.1), counts=False)]
+        at_1 = tables.point(model({1: lod(70, 0.1)}, files), 1, "meshopt")
+        self.assertEqual((at_1["file"]["rms"], at_1["least_max"]["rms"]), (0.2, 0.2))
 
     def test_points_without_a_picture_on_either_side_are_left_out_and_listed(self):
         nothing = {"bytes": None, "rms": None, "max": None}
