@@ -17,6 +17,7 @@ LABELS = {"vsplit": "vsplit, prefix of one file", **{
 
 matplotlib.rcParams.update({
     "font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
+    "axes.axisbelow": True,
     "grid.alpha": 0.3, "figure.constrained_layout.use": True, "savefig.dpi": 150,
     "svg.hashsalt": "vsplit", "svg.fonttype": "none",
 })
@@ -34,7 +35,8 @@ def curves(model):
     """By coder the (bits per vertex, rms) that it reaches; peers as their lower envelope."""
     prefixes = [row for row in model["prefixes"] if row["rms"] is not None]
     series = {"vsplit": envelope(prefixes)}
-    series.update({peer: envelope(files) for peer, files in model["peers"].items()})
+    series.update({peer: envelope([file for file in files if file["drawn"]])
+                   for peer, files in model["peers"].items()})
     return {
         coder: [(8 * row["bytes"] / model["vertices"], row["rms"]) for row in rows]
         for coder, rows in series.items()

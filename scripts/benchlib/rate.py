@@ -87,7 +87,8 @@ def collect(record):
         results = [future.result() for future in found]
         if any(result["vertices"] != record["vertices"] for result in results):
             raise Failed(f"{record['original']}: {peer} was given another mesh")
-        # The first search is the one that counts; the others are for the curves.
+        # The first search is the one that counts; curves go through the best file of every rate.
         record["peers"][peer] = [
-            {**file, "counts": result is results[0]}
+            {**file, "counts": result is results[0],
+             "drawn": file is min(row["files"], key=lambda other: other["rms"])}
             for result in results for row in result["rates"] for file in row["files"]]
