@@ -109,7 +109,8 @@ def bars(folder, name, values, label, marks):
 def draw(folder, results):
     """All plots for which there are measurements. Result: their names without extension."""
     models = results["models"]
-    names = rate_distortion(folder, models)
+    with_curves = any(row["rate"] is None for model in models for row in model["prefixes"])
+    names = rate_distortion(folder, models) if with_curves else []
     names.append(bars(folder, "total-bytes",
                       {model["name"]: model["bytes"] / model["draco_bytes"] for model in models},
                       "total bytes / Draco's",
