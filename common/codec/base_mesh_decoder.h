@@ -1,5 +1,6 @@
 #pragma once
 
+#include "codec/stream_info.h"
 #include "core/result.h"
 #include "mesh/indexed_mesh.h"
 
@@ -32,6 +33,13 @@ namespace vsplit::codec {
     std::uint32_t vertices,
     std::uint32_t faces,
     const std::array<std::int32_t, 3>& extent
+);
+
+/// Decodes the base chunk of a stream with the codec that its row names.
+/// `info`: of the stream; `bytes`: the chunk's contents. Result and error as above. Safe on untrusted
+/// input.
+[[nodiscard]] Result<GridMesh> decode_base_chunk(
+    const StreamInfo& info, std::span<const std::byte> bytes
 );
 
 }  // namespace vsplit::codec

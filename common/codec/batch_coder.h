@@ -8,6 +8,7 @@
 #include "codec/initial_model.h"
 #include "codec/refinement_coder.h"
 #include "codec/refinement_mesh.h"
+#include "codec/split_cost.h"
 #include "core/result.h"
 
 #include <algorithm>
@@ -32,6 +33,9 @@ struct BatchState
     int bits = 12;                 ///< Position bits of the full grid.
     std::int32_t cursor = 0;       ///< Next face to ask.
     std::int32_t batch_faces = 0;  ///< Faces when the batch started.
+    int steps = 0;                 ///< Bits of precision that the level's start still adds.
+    bool moving = false;           ///< Whether it may take vertices out of their cells.
+    std::uint32_t refined = 0;     ///< Vertices that have these bits.
 
     /// Largest coordinate on the current grid.
     [[nodiscard]] std::int32_t max_index() const { return ((1 << bits) - 1) >> shift; }
@@ -71,38 +75,71 @@ template <typename Coder>
     return false;
 }
 
-/// Codes what every known vertex adds to its position when `steps` bits of precision are gained.
-/// `target`: positions by vertex on the new grid, encoder only.
+/// Starts a level of shift `shift`, at most that of the level before: every vertex goes to the middle of
+/// the cell that it was in. `target`: positions by vertex on the level's grid, encoder only.
+template <typename Coder>
+void start_level(
+    Coder& coder, BatchState& state, int shift, std::span<const std::array<std::int32_t, 3>> target
+)
+{
+    state.steps = state.shift - shift;
+    state.refined = 0;
+    if (state.steps == 0)
+    {
+        return;
+    }
+    state.moving = coder.raw(leaves_cells(coder, state, state.steps, target) ? 1U : 0U, 1) != 0;
+    state.shift = shift;
+    const auto scale = static_cast<float>(std::int32_t{1} << state.steps);
+    for (std::uint32_t v = 0; v < state.mesh.vertex_count(); ++v)
+    {
+        Point& point = state.mesh.points()[v];
+        point.x = (point.x + 0.5F) * scale;
+        point.y = (point.y + 0.5F) * scale;
+        point.z = (point.z + 0.5F) * scale;
+    }
+}
+
+/// Says whether vertices still lack the bits that the level's start adds.
+[[nodiscard]] inline bool is_refining(const BatchState& state)
+{
+    return state.steps > 0;
+}
+
+/// Codes what the next refined_per_chunk() vertices add to their positions. `target`: as start_level()'s.
 /// Error: BadChunk when a vertex leaves the grid. Safe on untrusted input.
 template <typename Coder>
 [[nodiscard]] Result<void> refine_positions(
-    Coder& coder, BatchState& state, int steps, std::span<const std::array<std::int32_t, 3>> target
+    Coder& coder, BatchState& state, std::span<const std::array<std::int32_t, 3>> target
 )
 {
     Point* const points = state.mesh.points();
-    const std::int32_t scale = std::int32_t{1} << steps;
+    const std::int32_t half = std::int32_t{1} << (state.steps - 1);
     const std::int32_t most = state.max_index();
-    const bool moving = coder.raw(leaves_cells(coder, state, steps, target) ? 1U : 0U, 1) != 0;
-    for (std::uint32_t v = 0; v < state.mesh.vertex_count(); ++v)
+    const std::uint32_t left_over = state.mesh.vertex_count() - state.refined;
+    const std::uint32_t end = state.refined + std::min(left_over, refined_per_chunk(state.steps));
+    for (; state.refined < end; ++state.refined)
     {
+        const std::uint32_t v = state.refined;
         std::array<float, 3> position{points[v].x, points[v].y, points[v].z};
         std::size_t left = 0;
         for (std::size_t axis = 0; axis < 3; ++axis)
         {
-            const std::int32_t corner = static_cast<std::int32_t>(position[axis]) * scale;
+            const std::int32_t corner = static_cast<std::int32_t>(position[axis]) - half;
             std::int32_t added = 0;
             if constexpr (Coder::kEncodes)
             {
                 added = target[v][axis] - corner;
-                if (!is_in_reach(added, steps))
+                if (!is_in_reach(added, state.steps))
                 {
                     return fail(ErrorCode::Internal, "a vertex is too far from where it was");
                 }
             }
-            added = moving ? code_step(coder, state.model.refinement, added, steps, left)
-                           : static_cast<std::int32_t>(
-                                 coder.raw(static_cast<std::uint32_t>(added), steps)
-                             );
+            added = state.moving
+                        ? code_step(coder, state.model.refinement, added, state.steps, left)
+                        : static_cast<std::int32_t>(
+                              coder.raw(static_cast<std::uint32_t>(added), state.steps)
+                          );
             if (corner + added < 0 || corner + added > most)
             {
                 return fail(ErrorCode::BadChunk, "a vertex leaves the grid");
@@ -111,20 +148,8 @@ template <typename Coder>
         }
         points[v] = Point{position[0], position[1], position[2]};
     }
+    state.steps = end == state.mesh.vertex_count() ? 0 : state.steps;
     return {};
-}
-
-/// Starts a level of shift `shift`, at most that of the level before. `target`: positions by vertex on
-/// its grid, encoder only.
-/// Error: BadChunk when a vertex leaves the grid. Safe on untrusted input.
-template <typename Coder>
-[[nodiscard]] Result<void> code_level_start(
-    Coder& coder, BatchState& state, int shift, std::span<const std::array<std::int32_t, 3>> target
-)
-{
-    const int steps = state.shift - shift;
-    state.shift = shift;
-    return steps > 0 ? refine_positions(coder, state, steps, target) : Result<void>{};
 }
 
 /// Starts a batch: measures the edges and frees every face.

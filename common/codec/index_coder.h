@@ -6,6 +6,7 @@
 #include "codec/context_model.h"
 #include "codec/error_scale.h"
 #include "codec/float_log.h"
+#include "codec/split_cost.h"
 #include "format.h"
 
 #include <algorithm>
@@ -29,69 +30,6 @@ struct IndexRow
     std::uint32_t max_code = 0;
     std::uint32_t level_chunks = 0;    ///< First chunk of a level: Batch chunks of the level.
     std::uint32_t level_vertices = 0;  ///< First chunk of a level: what the level adds.
-};
-
-/// Bytes of a chunk that do not depend on its splits: the checksum and the ends of its bit streams.
-inline constexpr std::uint32_t kChunkOverheadBytes = 6;
-
-/// Bits that a level's start is expected to take when `vertices` known vertices get `drop` more bits of
-/// precision an axis: more where a level before may have shown vertices outside of their own cells.
-/// `shift`: of the level before.
-[[nodiscard]] inline std::uint64_t refinement_bits(std::uint32_t vertices, int shift, int drop)
-{
-    constexpr int kLeastShiftOfMoved = 2;
-    return (shift >= kLeastShiftOfMoved ? 9ULL : 6ULL) * vertices *
-           static_cast<std::uint32_t>(drop) / 2;
-}
-
-/// What splits have cost so far, from which rows predict lengths and the encoder cuts levels into
-/// chunks. Source: proto/STREAM_FORMAT.md, "Rows".
-class SplitCost
-{
-public:
-    /// Bits that `splits` (at most 2^28) will cost.
-    [[nodiscard]] std::uint64_t bits_for(std::uint64_t splits) const
-    {
-        return splits * bits_ / splits_;
-    }
-
-    /// Splits of the next of `chunks` (at least 1) chunks of equal length that hold `splits` splits and,
-    /// in the next one, `refinement` bits besides.
-    [[nodiscard]] std::uint32_t next_share(
-        std::uint32_t splits, std::uint32_t chunks, std::uint64_t refinement
-    ) const
-    {
-        const std::uint64_t share = (bits_for(splits) + refinement) / chunks;
-        const std::uint64_t left = share - std::min(share, refinement);
-        return static_cast<std::uint32_t>(std::min<std::uint64_t>(left * splits_ / bits_, splits));
-    }
-
-    /// Length to be expected of a chunk, bytes.
-    [[nodiscard]] std::uint32_t chunk_bytes(std::uint32_t splits, std::uint64_t refinement) const
-    {
-        const std::uint64_t bytes = (bits_for(splits) + refinement + 7) / 8 + kChunkOverheadBytes;
-        return static_cast<std::uint32_t>(std::min<std::uint64_t>(bytes, kMostBytes));
-    }
-
-    /// Takes note of a chunk.
-    void observe(std::uint32_t splits, std::uint32_t bytes, std::uint64_t refinement)
-    {
-        const std::uint64_t fixed = refinement + 8ULL * kChunkOverheadBytes;
-        const std::uint64_t bits = 8ULL * bytes - std::min<std::uint64_t>(8ULL * bytes, fixed);
-        bits_ += std::max<std::uint64_t>(bits, 2ULL * splits);
-        splits_ += splits;
-        for (; splits_ >= kMemory; splits_ /= 2)
-        {
-            bits_ /= 2;
-        }
-    }
-
-private:
-    static constexpr std::uint64_t kMostBytes = 1U << 28;
-    static constexpr std::uint64_t kMemory = 256;
-
-    std::uint64_t bits_ = 320;  ///< Of the chunks before, the last ones counting most.
-    std::uint64_t splits_ = 16;
 };
 
 /// Builds the model of an integer that typically is below 2^`size`. `nonzero`: probability, 1/65536, that
@@ -183,13 +121,20 @@ public:
     /// Codes the rest of the row of a Batch chunk. Result: false when a value is out of range.
     [[nodiscard]] bool code_batch(IndexRow& row)
     {
-        std::uint64_t refinement = 0;
-        const bool starts = chunks_left_ == 0;
-        if (starts && !code_level(row, refinement))
+        if (chunks_left_ == 0 && !code_level(row))
         {
             return false;
         }
-        if (!code_splits(row, refinement))
+        const std::uint32_t refined =
+            unrefined_ == 0 ? 0 : std::min(unrefined_, refined_per_chunk(drop_));
+        unrefined_ -= refined;
+        const std::uint64_t refinement = refinement_bits(refined, shift_ + drop_, drop_);
+        if (unrefined_ > 0)
+        {
+            row.vertices = 0;
+            row.boundary = 0;
+        }
+        if (unrefined_ > 0 ? chunks_left_ == 1 : !code_splits(row, refinement))
         {
             return false;
         }
@@ -248,7 +193,7 @@ private:
     }
 
     /// Codes what is said at the start of a level.
-    [[nodiscard]] bool code_level(IndexRow& row, std::uint64_t& refinement)
+    [[nodiscard]] bool code_level(IndexRow& row)
     {
         const auto chunks = static_cast<std::int32_t>(row.level_chunks) - level_chunks_;
         level_chunks_ += code_integer(coder_, model_.level_chunks, chunks, 0);
@@ -269,9 +214,10 @@ private:
         {
             return false;
         }
-        refinement = refinement_bits(vertices_, shift_, drop);
+        cost_.expect_drop(drop);
         shift_ -= drop;
-        dropped_ = drop > 0;
+        drop_ = drop;
+        unrefined_ = drop > 0 ? vertices_ : 0;
         level_start_ = vertices_;
         level_vertices_ = row.level_vertices;
         chunks_left_ = static_cast<std::uint32_t>(level_chunks_);
@@ -335,7 +281,7 @@ private:
         };
         const auto before = static_cast<std::int32_t>(rms_code_);
         const std::int32_t expected = before + log(vertices_) - log(level_start_);
-        if (!code_error(model_.rms, row.rms_code, expected, dropped_ ? 1 : 0))
+        if (!code_error(model_.rms, row.rms_code, expected, drop_ > 0 ? 1 : 0))
         {
             return false;
         }
@@ -365,7 +311,8 @@ private:
     std::uint32_t boundary_ = 1;     ///< Of the last chunk that had any
     std::uint32_t boundary_of_ = 4;  ///< and its splits.
     int shift_ = 0;
-    bool dropped_ = false;
+    int drop_ = 0;                 ///< Bits of precision that the level's start adds.
+    std::uint32_t unrefined_ = 0;  ///< Vertices that lack them.
     std::uint32_t rms_code_ = 0;
     std::uint32_t max_code_ = 0;
 };

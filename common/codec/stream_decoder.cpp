@@ -179,23 +179,10 @@ private:
                                                     : decode_batch(chunk, bytes, step);
     }
 
-    Result<GridMesh> decode_base_mesh(const ChunkInfo& chunk, std::span<const std::byte> bytes)
-        const
-    {
-        if (chunk.codec == proto::kDracoBaseCodec)
-        {
-            const auto max_index = static_cast<std::uint32_t>(state_.max_index());
-            return decode_draco_base(bytes, chunk.vertices, chunk.faces, max_index);
-        }
-        const auto [x, y, z] = info_->extent;
-        const std::array extent{x >> chunk.shift, y >> chunk.shift, z >> chunk.shift};
-        return decode_small_base(bytes, chunk.vertices, chunk.faces, extent);
-    }
-
     Result<void> decode_base(const ChunkInfo& chunk, std::span<const std::byte> bytes, Step& step)
     {
         state_.shift = chunk.shift;
-        const auto base = decode_base_mesh(chunk, bytes);
+        const auto base = decode_base_chunk(*info_, bytes);
         VSPLIT_TRY(base);
         // Not before Draco has given its own memory back.
         VSPLIT_TRY(take_memory([&] {
@@ -214,15 +201,27 @@ private:
     {
         BitDecoder bits;
         VSPLIT_TRY(bits.start(bytes));
-        const int shift = state_.shift;
-        std::uint32_t batches = 1;
-        if (info_->chunks[next_ - 1].ends_level)
+        const bool starts = info_->chunks[next_ - 1].ends_level;
+        const bool batches_follow = starts || is_refining(state_);
+        if (starts)
         {
-            VSPLIT_TRY(code_level_start(bits, state_, chunk.shift, {}));
+            start_level(bits, state_, chunk.shift, {});
+        }
+        if (is_refining(state_))
+        {
+            step.first_moved_vertex = state_.refined;
+            VSPLIT_TRY(refine_positions(bits, state_, {}));
+        }
+        if (is_refining(state_))
+        {
+            return bits.finish();
+        }
+        std::uint32_t batches = 1;
+        if (batches_follow)
+        {
             batches = bits.raw(0, kBatchCountBits) + 1;
             start_batch(state_);
         }
-        step.first_moved_vertex = state_.shift == shift ? step.first_new_vertex : 0;
         // What earlier batches changed is not kept: there are so many changes that all may be told.
         const bool several = batches > 1;
         for (; batches > 1; --batches)

@@ -224,11 +224,22 @@ private:
         {
             return fail(ErrorCode::Internal, "a level takes precision back");
         }
-        const std::uint64_t refinement =
-            refinement_bits(state_.mesh.vertex_count(), shift, shift - level.shift);
+        cost_.expect_drop(shift - level.shift);
         on_grid_.enter(level, level.shift != shift);
         const auto target = on_grid_.of(source_);
-        VSPLIT_TRY(code_level_start(bits, state_, level.shift, target));
+        start_level(bits, state_, level.shift, target);
+        std::uint32_t refined = 0;
+        while (is_refining(state_))
+        {
+            const std::uint32_t before = state_.refined;
+            VSPLIT_TRY(refine_positions(bits, state_, target));
+            refined = state_.refined - before;
+            if (is_refining(state_))
+            {
+                finish_chunk(bits, nullptr, 0);
+            }
+        }
+        const std::uint64_t refinement = refinement_bits(refined, shift, shift - level.shift);
         bits.raw(static_cast<std::uint32_t>(level.batches.size() - 1), kBatchCountBits);
         for (std::size_t i = 0; i + 1 < level.batches.size(); ++i)
         {
@@ -260,14 +271,20 @@ private:
             const std::uint32_t count =
                 chunks > 1 ? cost_.next_share(left, chunks, refinement) : left;
             VSPLIT_TRY(add_splits(bits, batch, *plan, count));
-            ByteWriter chunk;
-            bits.finish(chunk);
             left -= count;
-            add_chunk(proto::ChunkKind::Batch, chunk.view(), chunks == 1 ? &level : nullptr);
-            const std::uint32_t before = chunks_[chunks_.size() - 2].vertices;
-            cost_.observe(chunks_.back().vertices - before, chunks_.back().bytes, refinement);
+            finish_chunk(bits, chunks == 1 ? &level : nullptr, refinement);
         }
         return {};
+    }
+
+    /// Makes a chunk of the bits so far. `refinement`: as add_last_batch()'s.
+    void finish_chunk(BitEncoder& bits, const PlannedLevel* ends, std::uint64_t refinement)
+    {
+        ByteWriter chunk;
+        bits.finish(chunk);
+        const std::uint32_t before = chunks_.back().vertices;
+        add_chunk(proto::ChunkKind::Batch, chunk.view(), ends);
+        cost_.observe(chunks_.back().vertices - before, chunks_.back().bytes, refinement);
     }
 
     Result<void> add_splits(
@@ -309,7 +326,7 @@ private:
         const std::size_t most = std::clamp<std::size_t>(
             prefix / 12,
             std::min(prefix / 6, kSmallestChunkBytes),
-            proto::kTargetChunkBytes * 9ULL / 10
+            proto::kTargetChunkBytes * 5ULL / 8
         );
         const std::uint64_t bytes = (cost_.bits_for(splits) + refinement) / 8;
         return static_cast<std::uint32_t>(std::max<std::uint64_t>(bytes / most, 1));

@@ -3,6 +3,7 @@
 #include "codec/batch_coder.h"
 #include "codec/entropy_coder.h"
 #include "core/byte_writer.h"
+#include "format.h"
 
 #include <gtest/gtest.h>
 
@@ -44,6 +45,15 @@ Cells positions_of(const BatchState& state)
         );
     }
     return cells;
+}
+
+/// Starts a level, all in one.
+template <typename Coder>
+Result<void> code_level_start(Coder& coder, BatchState& state, int shift, const Cells& target)
+{
+    codec::start_level(coder, state, shift, target);
+    return codec::is_refining(state) ? codec::refine_positions(coder, state, target)
+                                     : Result<void>{};
 }
 
 Result<Cells> code_and_decode(const Cells& target, int shift, BatchState encoder = tetrahedron())
@@ -113,6 +123,73 @@ TEST(Refinement, CostsLittleForVerticesThatStay)
     ByteWriter bytes;
     bits.finish(bytes);
     EXPECT_LT(bytes.size(), 3000U / 8 + 30);
+}
+
+/// A fan of so many vertices on a grid of 20 bits that lacks 9 of them.
+BatchState large_fan(std::uint32_t vertices)
+{
+    BatchState state;
+    state.bits = 20;
+    state.shift = 9;
+    state.mesh.reserve(vertices, vertices - 2);
+    GridMesh base;
+    for (std::uint32_t v = 0; v < vertices; ++v)
+    {
+        const auto x = static_cast<std::int32_t>(v);
+        base.positions.push_back({x % 2048, x / 2048, x % 1999});
+        if (v >= 2)
+        {
+            base.triangles.push_back({0, v - 1, v});
+        }
+    }
+    EXPECT_TRUE(state.mesh.set_base(base, state.max_index()).has_value());
+    return state;
+}
+
+TEST(Refinement, IsCutIntoChunksThatAreNotTooLong)
+{
+    for (const int steps : {1, 2, 9})
+    {
+        SCOPED_TRACE(steps);
+        const std::uint32_t vertices = 3 * codec::refined_per_chunk(steps) + 5;
+        BatchState encoder = large_fan(vertices);
+        BatchState decoder = large_fan(vertices);
+        Cells target = positions_of(encoder);
+        for (std::size_t v = 0; v < target.size(); ++v)
+        {
+            for (std::int32_t& x : target[v])
+            {
+                x = x << steps | static_cast<std::int32_t>(v * 7 % (1U << steps));
+            }
+        }
+        int chunks = 0;
+        for (bool more = true; more; more = codec::is_refining(encoder), ++chunks)
+        {
+            BitEncoder bits;
+            BitDecoder read;
+            if (chunks == 0)
+            {
+                codec::start_level(bits, encoder, 9 - steps, target);
+            }
+            ASSERT_TRUE(codec::refine_positions(bits, encoder, target).has_value());
+            ByteWriter bytes;
+            bits.finish(bytes);
+            EXPECT_LT(bytes.size(), proto::kTargetChunkBytes * 3 / 4);
+            ASSERT_TRUE(read.start(bytes.view()).has_value());
+            if (chunks == 0)
+            {
+                codec::start_level(read, decoder, 9 - steps, {});
+            }
+            ASSERT_TRUE(codec::refine_positions(read, decoder, {}).has_value());
+            ASSERT_TRUE(read.finish().has_value());
+            // Those to come are shown in the middle of their cells.
+            const Cells shown = positions_of(decoder);
+            EXPECT_EQ(shown, positions_of(encoder));
+            EXPECT_NEAR(shown.back()[0], target.back()[0], more ? 1 << (steps - 1) : 0);
+        }
+        EXPECT_EQ(chunks, 4);
+        EXPECT_EQ(positions_of(decoder), target);
+    }
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include "codec/header_sample.h"
+#include "codec/index_coder.h"
 
 #include <gtest/gtest.h>
 
@@ -57,14 +58,22 @@ StreamInfo random_info(std::mt19937& random)
     last.kind = ChunkKind::Batch;
     for (std::uint32_t rows = below(40); rows > 0; --rows)
     {
+        const bool starts = info.chunks.back().ends_level;
+        const int drop = starts && below(3) == 0
+                             ? static_cast<int>(below(1U + static_cast<unsigned>(last.shift)))
+                             : 0;
+        last.shift -= drop;
+        // Refinement of more vertices than fit comes in chunks of its own.
+        const std::uint32_t refined =
+            drop > 0 ? (last.vertices - 1) / codec::refined_per_chunk(drop) : 0;
+        last.ends_level = false;
+        last.bytes = 4 + below(1U << below(17));
+        info.chunks.insert(info.chunks.end(), refined, last);
         last.ends_level = rows == 1 || below(3) == 0;
         const std::uint32_t splits = below(1U << below(16));
         last.vertices += splits;
         last.faces += 2 * splits - (below(2) == 0 ? 0 : below(splits + 1));
         last.bytes = 4 + below(1U << below(17));
-        last.shift = info.chunks.back().ends_level && below(3) == 0
-                         ? static_cast<int>(below(static_cast<std::uint32_t>(last.shift) + 1))
-                         : last.shift;
         info.chunks.push_back(last);
         if (below(8) == 0)
         {

@@ -213,8 +213,9 @@ TEST(EncodeMesh, TellsItsProgress)
 
 TEST(EncodeMesh, CutsLargeLevelsIntoSmallChunks)
 {
-    const EncodedSample sample =
-        encode(height_field(390, 385, 0.4, 7), {.metric = Metric::Qem, .threads = 2});
+    const EncodedSample sample = encode(
+        height_field(390, 385, 0.4, 7), {.position_bits = 20, .metric = Metric::Qem, .threads = 2}
+    );
     EXPECT_EQ(sample.info.vertex_count, 150150U);
     for (const codec::ChunkInfo& chunk : sample.info.chunks)
     {

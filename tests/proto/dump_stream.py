@@ -86,6 +86,11 @@ class Decoder:
         splits, batches = self.splits, 1
         if not self.open:
             splits.start_level(bits, row.shift)
+        if not self.open or splits.d > 0:
+            self.open = True
+            if splits.refine(bits):
+                bits.finish()
+                return
             batches = bits.raw(3, "batches less one") + 1
             splits.start_batch()
         for _ in range(batches - 1):

@@ -109,6 +109,7 @@ TEST(StreamFormatDocument, GivesTheConstantsOfTheCode)
         {"kCrc32cResidue", kCrc32cResidue},
         {"kErrorStepsPerOctave", kErrorStepsPerOctave},
         {"kZeroErrorCode", kZeroErrorCode},
+        {"kRefinementBits", kRefinementBits},
         {"kBatchCountBits", kBatchCountBits},
         {"kSplitCountBits", kSplitCountBits},
         {"kMaxWedge", kMaxWedge},

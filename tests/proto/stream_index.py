@@ -83,6 +83,8 @@ class Cost:
         return min((self.of(splits) + refinement + 7) // 8 + 6, MAX_BYTES)
 
     def observe(self, splits, length, refinement):
+        if splits == 0:
+            return
         self.bits += max(8 * length - refinement - 48, 2 * splits)
         self.splits += splits
         while self.splits >= 256:
@@ -175,15 +177,16 @@ class Index:
         self.add(row)
 
     def batch(self, row):
-        refinement = self.level() if self.chunks_left == 0 else 0
-        splits = self.splits_left if self.chunks_left == 1 else self.near(
-            "splits", self.cost.share(self.splits_left, self.chunks_left, refinement), 16,
-            self.splits_left)
-        boundary = 0
-        if self.bits.adaptive(self.has_boundary, "boundary splits"):
-            expected = min(splits * self.boundary[0] // self.boundary[1], splits)
-            boundary = self.near("boundary splits", expected, 3, splits)
-            self.boundary = (boundary, max(1, splits))
+        if self.chunks_left == 0:
+            self.level()
+        refined = min(self.unrefined, 2**18 // (3 * self.drop)) if self.unrefined else 0
+        self.unrefined -= refined
+        refinement = (9 if self.shift + self.drop >= 2 else 6) * refined * self.drop // 2
+        splits = boundary = 0
+        if self.unrefined > 0:
+            require(self.chunks_left > 1, "chunks of the level")
+        else:
+            splits, boundary = self.splits(refinement)
         row.bytes = self.near("bytes", self.cost.length(splits, refinement), 4, MAX_BYTES)
         self.cost.observe(splits, row.bytes, refinement)
         self.vertices += splits
@@ -194,6 +197,17 @@ class Index:
         if self.chunks_left == 0:
             self.errors()
 
+    def splits(self, refinement):
+        splits = self.splits_left if self.chunks_left == 1 else self.near(
+            "splits", self.cost.share(self.splits_left, self.chunks_left, refinement), 16,
+            self.splits_left)
+        if not self.bits.adaptive(self.has_boundary, "boundary splits"):
+            return splits, 0
+        expected = min(splits * self.boundary[0] // self.boundary[1], splits)
+        boundary = self.near("boundary splits", expected, 3, splits)
+        self.boundary = (boundary, max(1, splits))
+        return splits, boundary
+
     def level(self):
         self.level_chunks += self.bits.integer(
             self.model["chunks of the level"], 0, "chunks of the level")
@@ -203,11 +217,11 @@ class Index:
         self.level_splits = self.near("splits of the level", expected, 16, most)
         self.drop = self.bits.integer(self.model["drop of the shift"], 2, "drop of the shift")
         require(0 <= self.drop <= self.shift, "drop of the shift")
-        refinement = (9 if self.shift >= 2 else 6) * self.vertices * self.drop // 2
+        self.cost.bits += self.cost.splits * 3 * max(self.drop - 2, 0)
         self.shift -= self.drop
+        self.unrefined = self.vertices if self.drop > 0 else 0
         self.level_start = self.vertices
         self.chunks_left, self.splits_left = self.level_chunks, self.level_splits
-        return refinement
 
     def errors(self):
         before, maximum = self.codes

@@ -98,18 +98,31 @@ class Splits:
     def start_level(self, bits, shift):
         mesh = self.mesh
         d, mesh.shift = mesh.shift - shift, shift
+        self.d, self.refined = d, 0
+        if d > 0:
+            self.moving = bits.raw(1, "moving")
+            mesh.positions = [
+                tuple((x << d) + (1 << (d - 1)) for x in position) for position in mesh.positions]
+
+    def refine(self, bits):
+        """Brings precision to as many vertices as a chunk holds; says whether some are left."""
+        mesh, d = self.mesh, self.d
         if d == 0:
-            return
-        moving = bits.raw(1, "moving")
-        for v, position in enumerate(mesh.positions):
+            return False
+        end = min(self.refined + 2**18 // (3 * d), len(mesh.positions))
+        for v in range(self.refined, end):
             self.left, moved = 0, []
-            for x, axis in zip(position, "xyz"):
+            for x, axis in zip(mesh.positions[v], "xyz"):
                 name = f"vertex {v} {axis}"
-                x = (x << d) + (self.step(bits, d, name) if moving else bits.raw(d, name))
-                if not 0 <= x <= (1 << mesh.bits) - 1 >> shift:
+                x += self.step(bits, d, name) if self.moving else bits.raw(d, name)
+                x -= 1 << (d - 1)
+                if not 0 <= x <= (1 << mesh.bits) - 1 >> mesh.shift:
                     raise Refusal("bad-chunk", "a vertex leaves the grid")
                 moved.append(x)
             mesh.positions[v] = tuple(moved)
+        self.refined = end
+        self.d = 0 if end == len(mesh.positions) else d
+        return self.d > 0
 
     def step(self, bits, d, name):
         upper, cells = bits.raw(1, name + " upper"), 0

@@ -28,4 +28,17 @@ Result<GridMesh> decode_small_base(
     return std::move(coder.mesh());
 }
 
+Result<GridMesh> decode_base_chunk(const StreamInfo& info, std::span<const std::byte> bytes)
+{
+    const ChunkInfo& chunk = info.chunks.front();
+    if (chunk.codec == proto::kDracoBaseCodec)
+    {
+        const auto max_index = static_cast<std::uint32_t>(info.grid.max_index() >> chunk.shift);
+        return decode_draco_base(bytes, chunk.vertices, chunk.faces, max_index);
+    }
+    const auto [x, y, z] = info.extent;
+    const std::array extent{x >> chunk.shift, y >> chunk.shift, z >> chunk.shift};
+    return decode_small_base(bytes, chunk.vertices, chunk.faces, extent);
+}
+
 }  // namespace vsplit::codec
