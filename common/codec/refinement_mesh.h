@@ -211,7 +211,8 @@ private:
     void split_right(const Split& split, std::uint32_t kept, std::uint32_t removed);
     void split_left(const Split& split, Corner last, std::uint32_t kept, std::uint32_t removed);
 
-    std::vector<Face> storage_;  ///< One sentinel, then the faces.
+    /// One sentinel, which is there from the beginning, then the faces.
+    std::vector<Face> storage_ = std::vector<Face>(1, Face{.state = FaceState::Boundary});
     std::vector<Point> points_;
     std::vector<std::uint16_t> valences_;
     std::uint32_t vertex_count_ = 0;
