@@ -59,13 +59,23 @@ void GpuBuffers::reserve(std::uint32_t vertices, std::uint32_t faces)
     dirty_triangles_.reserve(faces);
 }
 
-void GpuBuffers::apply(const codec::Step& step, const PositionSource& positions)
+void GpuBuffers::apply(
+    const codec::Step& step, const PositionSource& positions, const TriangleSource& triangles
+)
 {
     VSPLIT_ASSERT(step.vertices >= vertices_.size() && step.faces >= triangles_.size());
     const auto known = static_cast<std::uint32_t>(vertices_.size());
     const std::uint32_t first_moved = std::min(known, step.first_moved_vertex);
     vertices_.resize(step.vertices);
     triangles_.resize(step.faces);
+    if (step.triangles_replaced)
+    {
+        write_positions(first_moved, step.vertices, positions);
+        triangles(triangles_);
+        dirty_triangles_.mark_range(0, step.faces);
+        rebuild_normals();
+        return;
+    }
     if (first_moved < known)
     {
         write_positions(first_moved, step.vertices, positions);

@@ -27,6 +27,9 @@ struct GpuVertex
 using PositionSource =
     std::function<void(std::uint32_t first, std::uint32_t count, std::span<float> out)>;
 
+/// Writes all triangles of the mesh.
+using TriangleSource = std::function<void(std::span<Triangle> out)>;
+
 /// The vertex and index arrays that the GPU draws, kept up to date in time proportional to what
 /// changed: vertices are appended, triangles keep their slot, and smooth normals change only around
 /// changed triangles. Normals are sums of integers, so taking a triangle away restores exactly what
@@ -43,11 +46,16 @@ public:
     void reserve(std::uint32_t vertices, std::uint32_t faces);
 
     /// Follows one step of the decoder.
-    /// `step`: of kind Chunk, in the decoder's order, none left out; `positions`: of the mesh after it.
+    /// `step`: of kind Chunk, in the decoder's order, none left out; `positions`: of the mesh after it;
+    /// `triangles`: those of the mesh after it, asked only when step.triangles_replaced.
     /// Preconditions: triangles refer to vertices below step.vertices, slots are below step.faces.
     /// Cost: linear in new vertices and changed triangles; linear in the mesh when known positions
-    /// moved (step.first_moved_vertex < step.first_new_vertex).
-    void apply(const codec::Step& step, const PositionSource& positions);
+    /// moved (step.first_moved_vertex < step.first_new_vertex) or all triangles were replaced.
+    void apply(
+        const codec::Step& step,
+        const PositionSource& positions,
+        const TriangleSource& triangles = {}
+    );
 
     /// The vertex array.
     [[nodiscard]] std::span<const GpuVertex> vertices() const { return vertices_; }

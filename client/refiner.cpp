@@ -7,7 +7,8 @@ Refiner::Refiner(const codec::StreamInfo& info, const codec::DecodeLimits& limit
       buffers_(info.diagonal()),
       positions_([this](std::uint32_t first, std::uint32_t count, std::span<float> out) {
           decoder_.write_positions(first, count, out);
-      })
+      }),
+      triangles_([this](std::span<Triangle> out) { decoder_.write_triangles(out); })
 {
     buffers_.reserve(info.vertex_count, info.face_count);
 }
@@ -33,7 +34,7 @@ Result<Progress> Refiner::advance(std::chrono::duration<double> budget)
         }
         if (step->kind == codec::StepKind::Chunk)
         {
-            buffers_.apply(*step, positions_);
+            buffers_.apply(*step, positions_, triangles_);
             progress.changed = true;
         }
         progress.chunk_bytes += step->chunk_bytes;

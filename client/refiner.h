@@ -50,6 +50,7 @@ private:
     codec::StreamDecoder decoder_;
     GpuBuffers buffers_;
     PositionSource positions_;
+    TriangleSource triangles_;
 };
 
 }  // namespace vsplit::client

@@ -40,6 +40,7 @@ enum class ChunkKind : std::uint8_t
 {
     Base = 0,     ///< The base mesh.
     Batch = 1,    ///< Vertex splits that refine the mesh.
+    Growth = 2,   ///< A part of the complete mesh, grown over the coarse one.
     Stitch = 64,  ///< Which vertices of the last level are one vertex in the source mesh.
 };
 

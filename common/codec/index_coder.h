@@ -21,14 +21,15 @@ struct IndexRow
 {
     proto::ChunkKind kind = proto::ChunkKind::Batch;
     std::uint8_t codec = 0;
-    std::uint32_t bytes = 0;     ///< Length of the chunk, checksum included.
-    std::uint32_t vertices = 0;  ///< Base: of the mesh; Batch: that the chunk adds.
+    std::uint32_t bytes = 0;  ///< Length of the chunk, checksum included.
+    /// Base: of the mesh; Batch: that the chunk adds; first Growth chunk: of the complete mesh.
+    std::uint32_t vertices = 0;
     std::uint32_t boundary = 0;  ///< Batch: how many of them split a boundary.
-    std::uint32_t faces = 0;     ///< Base only.
+    std::uint32_t faces = 0;     ///< Base, and Growth as below.
     int shift = 0;               ///< Base and first chunk of a level: the level's shift.
     std::uint32_t rms_code = 0;  ///< Base and last chunk of a level: its errors.
     std::uint32_t max_code = 0;
-    std::uint32_t level_chunks = 0;    ///< First chunk of a level: Batch chunks of the level.
+    std::uint32_t level_chunks = 0;    ///< First chunk of a level: chunks of the level.
     std::uint32_t level_vertices = 0;  ///< First chunk of a level: what the level adds.
 };
 
@@ -121,7 +122,7 @@ public:
     /// Codes the rest of the row of a Batch chunk. Result: false when a value is out of range.
     [[nodiscard]] bool code_batch(IndexRow& row)
     {
-        if (chunks_left_ == 0 && !code_level(row))
+        if (grown_ || (chunks_left_ == 0 && !code_level(row)))
         {
             return false;
         }
@@ -148,6 +149,40 @@ public:
         vertices_left_ -= row.vertices;
         --chunks_left_;
         return chunks_left_ > 0 || code_errors(row);
+    }
+
+    /// Codes the rest of the row of a Growth chunk; the first one tells of the whole level.
+    /// Result: false when a value is out of range, a level is open or the mesh has grown before.
+    [[nodiscard]] bool code_growth(IndexRow& row)
+    {
+        const bool starts = chunks_left_ == 0;
+        if (starts == grown_)
+        {
+            return false;
+        }
+        if (starts)
+        {
+            grown_ = true;
+            row.level_chunks = code_number(row.level_chunks);
+            row.vertices = code_number(row.vertices);
+            row.faces = code_number(row.faces);
+            if (row.level_chunks < 1 || row.level_chunks > proto::kMaxChunks ||
+                row.vertices < vertices_ || row.vertices > proto::kMaxVertices || row.faces < 1 ||
+                row.faces > proto::kMaxFaces)
+            {
+                return false;
+            }
+            chunks_left_ = row.level_chunks;
+            level_start_ = vertices_;
+            vertices_ = row.vertices;
+            if (!code_errors(row))
+            {
+                return false;
+            }
+        }
+        row.bytes = code_number(row.bytes);
+        --chunks_left_;
+        return row.bytes <= kMostBytes;
     }
 
     /// Tells whether the last row ended a level.
@@ -313,6 +348,7 @@ private:
     int shift_ = 0;
     int drop_ = 0;                 ///< Bits of precision that the level's start adds.
     std::uint32_t unrefined_ = 0;  ///< Vertices that lack them.
+    bool grown_ = false;
     std::uint32_t rms_code_ = 0;
     std::uint32_t max_code_ = 0;
 };

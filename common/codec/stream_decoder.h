@@ -37,6 +37,8 @@ struct Step
     std::uint32_t vertices = 0;  ///< Vertices of the mesh now.
     std::uint32_t faces = 0;     ///< Triangles of the mesh now.
     TriangleUpdates triangles;   ///< Valid until the next step(), and while the decoder stays.
+    /// True when every triangle is another one: read them all with write_triangles().
+    bool triangles_replaced = false;
 };
 
 /// Turns the bytes of a stream, as they come, into a mesh that gets finer. Vertices are appended and

@@ -4,7 +4,9 @@
 #include "codec/batch_coder.h"
 #include "codec/entropy_coder.h"
 #include "codec/grid_positions.h"
+#include "codec/growth_planner.h"
 #include "codec/index_coder.h"
+#include "codec/split_planner.h"
 #include "codec/stitch_coder.h"
 #include "codec/stream_header_writer.h"
 #include "codec/weight_fit.h"
@@ -12,6 +14,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <utility>
 
 namespace vsplit::codec {
@@ -24,6 +27,9 @@ constexpr std::size_t kHeaderBytes = 90;
 
 /// A chunk costs about seven bytes of its own; where the prefix is long, shorter ones bring nothing.
 constexpr std::size_t kSmallestChunkBytes = 700;
+
+/// Bits a vertex from which the rest may come as one level: finer prefixes hardly differ on a screen.
+constexpr double kGrowthBits = 2.6;
 
 /// Builds the stream chunk by chunk, keeping the mesh as the decoder will have it.
 class StreamBuilder
@@ -51,21 +57,32 @@ public:
     Result<std::vector<std::byte>> run()
     {
         VSPLIT_TRY(add_base());
+        std::optional<StreamBuilder> grown;
         for (std::size_t level = 1; level < plan_.levels.size(); ++level)
         {
             VSPLIT_TRY(add_level(plan_.levels[level]));
+            if (!grown && plan_.training == nullptr && may_grow_from(level))
+            {
+                const auto plan = cheapest_growth(*plan_.mesh, place_, state_);
+                if (plan)
+                {
+                    grown.emplace(*this);
+                    VSPLIT_TRY(grown->add_growth(*plan));
+                }
+            }
         }
         if (state_.mesh.vertex_count() != plan_.mesh->positions.size() ||
             state_.mesh.face_count() != plan_.mesh->triangles.size() || state_.shift != 0)
         {
             return fail(ErrorCode::Internal, "the collapse sequence does not undo itself");
         }
-        add_stitches();
         if (plan_.training != nullptr)
         {
             *plan_.training = state_.model;
         }
-        return assemble();
+        StreamBuilder& smaller = grown && grown->payload_.size() < payload_.size() ? *grown : *this;
+        smaller.add_stitches();
+        return smaller.assemble();
     }
 
 private:
@@ -77,9 +94,9 @@ private:
         chunk.kind = kind;
         chunk.ends_level = ends != nullptr || kind == proto::ChunkKind::Stitch;
         chunk.bytes = static_cast<std::uint32_t>(bytes.size()) + proto::kChunkChecksumBytes;
-        chunk.vertices = state_.mesh.vertex_count();
-        chunk.faces = state_.mesh.face_count();
-        chunk.shift = state_.shift;
+        chunk.vertices = grown_ ? plan_vertices() : state_.mesh.vertex_count();
+        chunk.faces = grown_ ? plan_faces() : state_.mesh.face_count();
+        chunk.shift = grown_ ? 0 : state_.shift;
         if (ends != nullptr)
         {
             chunk.rms_error = ends->rms_error;
@@ -90,7 +107,7 @@ private:
         payload_.write(crc32c(bytes));
         content_checksum_ =
             crc32c(payload_.view().last(proto::kChunkChecksumBytes), content_checksum_);
-        if (progress_)
+        if (progress_ && kind != proto::ChunkKind::Growth)
         {
             progress_(
                 static_cast<double>(chunk.vertices) /
@@ -152,70 +169,6 @@ private:
         return {};
     }
 
-    /// Finds the corner at which a collapse's wedge begins in the coarse mesh.
-    Corner find_wedge(const Collapse& collapse, Corner some) const
-    {
-        const RefinementMesh& mesh = state_.mesh;
-        const std::uint32_t right = place_[collapse.right];
-        const auto found = [&](Corner corner) { return mesh.vertex(next_corner(corner)) == right; };
-        Corner corner = some;
-        do
-        {
-            if (found(corner))
-            {
-                return corner;
-            }
-            const Corner across = mesh.opposite(next_corner(corner));
-            corner = across < 0 ? -1 : next_corner(across);
-        }
-        while (corner >= 0 && corner != some);
-        corner = corner < 0 ? some : -1;
-        while (corner >= 0 && !found(corner))
-        {
-            const Corner across = mesh.opposite(previous_corner(corner));
-            corner = across < 0 ? -1 : previous_corner(across);
-        }
-        return corner;
-    }
-
-    Result<SplitPlan> plan_splits(std::span<const Collapse> batch)
-    {
-        const RefinementMesh& mesh = state_.mesh;
-        std::vector<Corner> corner_of(mesh.vertex_count(), -1);
-        for (std::uint32_t f = 0; f < mesh.face_count(); ++f)
-        {
-            for (Corner k = 0; k < 3; ++k)
-            {
-                corner_of[mesh.vertex(static_cast<Corner>(f) * 4 + k)] =
-                    static_cast<Corner>(f) * 4 + k;
-            }
-        }
-        SplitPlan plan;
-        plan.split_of_face.assign(mesh.face_count(), SplitPlan::kNoSplit);
-        for (const Collapse& collapse : batch)
-        {
-            Split split;
-            split.first = find_wedge(collapse, corner_of[place_[collapse.kept]]);
-            split.wedge = collapse.wedge;
-            split.kind = collapse.kind;
-            Corner corner = split.first;
-            for (int i = 0; i < split.wedge; ++i)
-            {
-                if (corner < 0 || plan.split_of_face[static_cast<std::size_t>(face_of(corner))] !=
-                                      SplitPlan::kNoSplit)
-                {
-                    return fail(ErrorCode::Internal, "a level's collapses are not independent");
-                }
-                plan.split_of_face[static_cast<std::size_t>(face_of(corner))] =
-                    static_cast<std::uint32_t>(plan.splits.size());
-                const Corner across = mesh.opposite(next_corner(corner));
-                corner = across < 0 ? -1 : next_corner(across);
-            }
-            plan.splits.push_back(split);
-        }
-        return plan;
-    }
-
     Result<void> add_level(const PlannedLevel& level)
     {
         BitEncoder bits;
@@ -244,7 +197,7 @@ private:
         for (std::size_t i = 0; i + 1 < level.batches.size(); ++i)
         {
             start_batch(state_);
-            const auto plan = plan_splits(level.batches[i]);
+            const auto plan = plan_splits(state_.mesh, place_, level.batches[i]);
             VSPLIT_TRY(plan);
             const auto count = static_cast<std::uint32_t>(level.batches[i].size());
             bits.raw(count, kSplitCountBits);
@@ -261,7 +214,7 @@ private:
     )
     {
         const auto& batch = level.batches.back();
-        const auto plan = plan_splits(batch);
+        const auto plan = plan_splits(state_.mesh, place_, batch);
         VSPLIT_TRY(plan);
         auto left = static_cast<std::uint32_t>(batch.size());
         const bool whole = level.batches.size() > 1 || !plan_.cut_levels;
@@ -332,6 +285,57 @@ private:
         return static_cast<std::uint32_t>(std::max<std::uint64_t>(bytes / most, 1));
     }
 
+    std::uint32_t plan_vertices() const
+    {
+        return static_cast<std::uint32_t>(plan_.mesh->positions.size());
+    }
+
+    std::uint32_t plan_faces() const
+    {
+        return static_cast<std::uint32_t>(plan_.mesh->triangles.size());
+    }
+
+    /// True when the prefix up to a level shows enough for the rest to come as one level.
+    bool may_grow_from(std::size_t level) const
+    {
+        const double bits = 8.0 * static_cast<double>(payload_.size()) / plan_vertices();
+        return plan_.grow_last_level && level + 1 < plan_.levels.size() &&
+               (bits >= kGrowthBits || plan_.levels[level].shift == 0);
+    }
+
+    /// Codes the complete mesh over the present level.
+    Result<void> add_growth(const GrowthPlan& plan)
+    {
+        const std::uint32_t coarse = state_.mesh.vertex_count();
+        GrowthSource source(*plan_.mesh, place_);
+        Growth growth(plan_vertices(), plan_faces());
+        for (std::size_t i = 0; i < plan.chunks.size(); ++i)
+        {
+            BitEncoder bits;
+            VSPLIT_TRY(growth.run(bits, state_, plan.chunks[i], plan.surface_share, &source));
+            ByteWriter chunk;
+            bits.finish(chunk);
+            grown_ = i + 1 == plan.chunks.size();
+            add_chunk(
+                proto::ChunkKind::Growth, chunk.view(), grown_ ? &plan_.levels.back() : nullptr
+            );
+        }
+        if (!growth.complete())
+        {
+            return fail(ErrorCode::Internal, "the growth does not reach the complete mesh");
+        }
+        std::vector<std::uint32_t> grown(growth.numbers().size());
+        for (std::uint32_t t = 0; t < grown.size(); ++t)
+        {
+            grown[growth.numbers()[t]] = source.vertex(t);
+        }
+        for (std::uint32_t v = coarse; v < grown.size(); ++v)
+        {
+            place_vertex(grown[v]);
+        }
+        return {};
+    }
+
     void add_stitches()
     {
         if (plan_.stitches.empty())
@@ -360,8 +364,8 @@ private:
     {
         StreamInfo info;
         info.grid = plan_.grid;
-        info.vertex_count = state_.mesh.vertex_count();
-        info.face_count = state_.mesh.face_count();
+        info.vertex_count = plan_vertices();
+        info.face_count = plan_faces();
         info.chunks = std::move(chunks_);
         info.content_checksum = content_checksum_;
         std::vector<std::byte> file = write_stream_header(info, extent_);
@@ -381,6 +385,7 @@ private:
     std::uint32_t content_checksum_ = 0;
     std::array<std::int32_t, 3> extent_{};  ///< Largest index per axis.
     SplitCost cost_;
+    bool grown_ = false;  ///< The complete mesh was grown.
 };
 
 }  // namespace

@@ -57,6 +57,7 @@ struct StreamPlan
     /// back in it. The stream is then not decodable.
     LearnedModel* training = nullptr;
     std::span<const std::uint32_t> stitches;  ///< As EncodedMesh's; empty when nothing was cut.
+    bool grow_last_level = true;              ///< False: splits to the end.
     bool cut_levels = true;                   ///< False: one chunk a level, however long.
 };
 

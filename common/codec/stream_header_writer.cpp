@@ -59,6 +59,11 @@ public:
                 index_.code_optional(row);
                 return;
             }
+            if (chunk.kind == proto::ChunkKind::Growth)
+            {
+                write_growth(i, row);
+                return;
+            }
             row.vertices = chunk.vertices - vertices_;
             row.boundary = 2 * row.vertices - (chunk.faces - faces_);
             count_level(i, row);
@@ -78,6 +83,29 @@ private:
     std::uint32_t code_of(double error) const
     {
         return error_to_code(diagonal_ > 0.0 ? error / diagonal_ : 0.0);
+    }
+
+    /// Writes the rest of the row of a Growth chunk, which tells of the level's end.
+    void write_growth(std::size_t i, IndexRow& row)
+    {
+        count_level(i, row);
+        const ChunkInfo& last = info_.chunks[last_of_level(i)];
+        row.vertices = last.vertices;
+        row.faces = last.faces;
+        row.rms_code = code_of(last.rms_error);
+        row.max_code = code_of(last.max_error);
+        static_cast<void>(index_.code_growth(row));
+    }
+
+    /// Finds the chunk that ends the level of chunk `i`.
+    std::size_t last_of_level(std::size_t i) const
+    {
+        while (i + 1 < info_.chunks.size() &&
+               (is_optional(info_.chunks[i].kind) || !info_.chunks[i].ends_level))
+        {
+            ++i;
+        }
+        return i;
     }
 
     /// Finds chunks and splits of the level that begins with chunk `i`.

@@ -85,18 +85,56 @@ LargestChunk largest_chunk(const StreamInfo& info)
     for (const ChunkInfo& chunk : info.chunks)
     {
         largest.bytes = std::max(largest.bytes, chunk.bytes);
-        largest.splits = std::max(largest.splits, chunk.vertices - vertices);
+        if (chunk.kind == proto::ChunkKind::Growth)
+        {
+            vertices = info.vertex_count;  // splits nothing, and nothing splits after it
+            continue;
+        }
+        largest.splits =
+            std::max(largest.splits, chunk.vertices - std::min(vertices, chunk.vertices));
         vertices = chunk.vertices;
     }
     return largest;
 }
+
+RefinedCounts refined_counts(const StreamInfo& info)
+{
+    RefinedCounts counts;
+    for (const ChunkInfo& chunk : info.chunks)
+    {
+        if (chunk.kind == proto::ChunkKind::Growth)
+        {
+            break;
+        }
+        counts = {chunk.vertices, chunk.faces};
+    }
+    return counts;
+}
+
+namespace {
+
+/// Heap for growing a complete mesh over a coarse one.
+std::uint64_t growth_heap_bytes(const StreamInfo& info, const RefinedCounts& coarse)
+{
+    // Per face: vertices and neighbours. Per vertex: position, number, coarse face, sizes of residuals,
+    // a count of faces, its turn in either list; while faces grow, at most as much for the border. Per
+    // coarse vertex: whether it was met and a face. The constant covers the learned model.
+    constexpr std::uint64_t kFixed = 256U * 1024U;
+    return kFixed + 24ULL * info.face_count + 30ULL * info.vertex_count + 5ULL * coarse.vertices;
+}
+
+}  // namespace
 
 std::uint64_t decoder_heap_bytes(const StreamInfo& info)
 {
     const bool stitched = std::ranges::any_of(info.chunks, [](const ChunkInfo& chunk) {
         return chunk.kind == proto::ChunkKind::Stitch;
     });
+    const bool grows = std::ranges::any_of(info.chunks, [](const ChunkInfo& chunk) {
+        return chunk.kind == proto::ChunkKind::Growth;
+    });
     const LargestChunk largest = largest_chunk(info);
+    const RefinedCounts refined = refined_counts(info);
     // The base first: per vertex what Draco needs besides the tables of its entropy coder.
     const ChunkInfo& base = info.chunks.front();
     const auto max_index = static_cast<std::uint32_t>(info.grid.max_index());
@@ -105,10 +143,10 @@ std::uint64_t decoder_heap_bytes(const StreamInfo& info)
     // Then, beside the decoded base, the tables that link it. Per vertex: position and valence; its
     // stitch, its place in their order, one class of its own. Per face: connectivity. Per split of the
     // largest chunk: where it is.
-    const std::uint64_t mesh = 20ULL * base.vertices + 60ULL * base.faces +
-                               14ULL * info.vertex_count +
-                               12ULL * (stitched ? info.vertex_count : 0) +
-                               32ULL * info.face_count + 8ULL * largest.splits;
+    const std::uint64_t mesh =
+        20ULL * base.vertices + 60ULL * base.faces + 14ULL * refined.vertices +
+        12ULL * (stitched ? info.vertex_count : 0) + 32ULL * refined.faces + 8ULL * largest.splits +
+        (grows ? growth_heap_bytes(info, refined) : 0);
     // The learned model and small things.
     constexpr std::uint64_t kFixed = 128U * 1024U;
     return kFixed + std::max(draco, mesh) + largest.bytes +

@@ -134,6 +134,17 @@ struct LargestChunk
 /// The longest chunk, and the most splits of one.
 [[nodiscard]] LargestChunk largest_chunk(const StreamInfo& info);
 
+/// Vertices and triangles of the finest mesh that splits lead to: the last one, or the coarse mesh over
+/// which the complete one grows.
+struct RefinedCounts
+{
+    std::uint32_t vertices = 0;
+    std::uint32_t faces = 0;
+};
+
+/// Finds them. Cost: linear in the index.
+[[nodiscard]] RefinedCounts refined_counts(const StreamInfo& info);
+
 /// Returns an upper bound of the heap that a StreamDecoder needs for the whole stream, bytes; for a
 /// decoder with DecodeLimits::max_level ask with prefix_info().
 [[nodiscard]] std::uint64_t decoder_heap_bytes(const StreamInfo& info);

@@ -243,6 +243,14 @@ Result<std::vector<std::byte>> with_errors(
     {
         errors.push_back({distance.rms * cell, distance.max * cell});
     }
+    // Where the complete mesh is grown, its level follows an earlier one.
+    const auto info = codec::parse_stream_info(file);
+    VSPLIT_TRY(info);
+    if (info->levels.size() < errors.size())
+    {
+        errors[info->levels.size() - 1] = errors.back();
+        errors.resize(info->levels.size());
+    }
     return codec::replace_errors(file, errors);
 }
 
@@ -295,6 +303,7 @@ Result<EncodedMesh> encode_source(
 
     auto plan = make_plan(sequence, source, views);
     plan.training = options.training;
+    plan.grow_last_level = options.grow_last_level && options.level_vertices.empty();
     plan.cut_levels = options.cut_levels;
     auto file = codec::encode_stream(plan, stage_progress(progress, "code"));
     VSPLIT_TRY(file);

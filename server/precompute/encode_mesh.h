@@ -26,6 +26,8 @@ struct EncodeOptions
     std::vector<float> importance{};
     /// For training only, see codec::StreamPlan::training.
     codec::LearnedModel* training = nullptr;
+    /// False: only splits, no last level that is grown where that is smaller.
+    bool grow_last_level = true;
     bool cut_levels = true;  ///< False: one chunk a level, however long; to see what the cuts cost.
     unsigned threads = 1;    ///< Worker threads, at least 1; the bytes do not depend on it.
 };

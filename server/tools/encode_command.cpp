@@ -283,6 +283,21 @@ std::vector<std::string> metric_names()
     return names;
 }
 
+/// Adds what says how levels are coded.
+void add_level_flags(CLI::App& command, EncodeOptions& options)
+{
+    command.add_flag(
+        "--uncut{false}",
+        options.cut_levels,
+        "Give every level one chunk, however long; to see what cutting costs"
+    );
+    command.add_flag(
+        "--splits-only{false}",
+        options.grow_last_level,
+        "Refine by splits to the end: larger files, but every chunk shows more"
+    );
+}
+
 }  // namespace
 
 void add_encode_command(CLI::App& app, Result<void>& result)
@@ -331,11 +346,7 @@ void add_encode_command(CLI::App& app, Result<void>& result)
         "Keep vertices longest by a text file with one number, 0 .. 1, for each vertex of IN"
     );
     constexpr unsigned kMostThreads = 256;
-    command->add_flag(
-        "--uncut{false}",
-        options.cut_levels,
-        "Give every level one chunk, however long; to see what cutting costs"
-    );
+    add_level_flags(*command, options);
     command->add_option("--threads", options.threads, "Worker threads; do not change the result")
         ->check(CLI::Range(1U, kMostThreads))
         ->capture_default_str();

@@ -25,6 +25,8 @@ const char* kind_name(proto::ChunkKind kind)
             return "base";
         case proto::ChunkKind::Batch:
             return "batch";
+        case proto::ChunkKind::Growth:
+            return "growth";
         case proto::ChunkKind::Stitch:
             return "stitch";
     }

@@ -146,6 +146,10 @@ struct Mirror
             ASSERT_LT(update.slot, triangles.size());
             triangles[update.slot] = update.vertices;
         }
+        if (step.triangles_replaced)
+        {
+            decoder.write_triangles(triangles);
+        }
     }
 };
 

@@ -208,7 +208,7 @@ TEST(StreamIndex, HoldsMoreRowsThanALengthOfOneOrTwoBytesCounts)
 TEST(StreamIndex, RefusesUnknownRequiredKindsAndCodecs)
 {
     StreamInfo info = sample_info();
-    info.chunks[1].kind = static_cast<ChunkKind>(2);
+    info.chunks[1].kind = static_cast<ChunkKind>(3);
     EXPECT_EQ(code_of(write_header(info)), ErrorCode::UnknownRequiredChunk);
     info = sample_info();
     info.chunks[1].codec = 1;

@@ -229,6 +229,7 @@ void expect_replay(Sequence sequence, std::size_t per_level)
         const std::size_t later = plan.levels.size() - 1 - level;
         plan.levels[level].shift = static_cast<int>(std::min<std::size_t>(later, 5));
     }
+    plan.grow_last_level = false;
     const auto file = codec::encode_stream(plan);
     ASSERT_TRUE(file.has_value()) << describe(file.error());
     const Decoded decoded = decode(*file);
