@@ -134,6 +134,7 @@ TEST(StreamFormatDocument, NamesEveryChunkKindWithItsNumber)
     const Numbers expected{
         {"Base", static_cast<unsigned long>(proto::ChunkKind::Base)},
         {"Batch", static_cast<unsigned long>(proto::ChunkKind::Batch)},
+        {"Growth", static_cast<unsigned long>(proto::ChunkKind::Growth)},
         {"Stitch", static_cast<unsigned long>(proto::ChunkKind::Stitch)},
     };
     const std::string row = R"(\| (\d+) \| `(\w+)` \| (?:yes|no) \|)";
