@@ -87,7 +87,8 @@ public:
 
     /// Gives the faces their final vertex numbers and frees what only the growth needs; the coarse mesh
     /// is not used any more. Precondition: complete().
-    void finish()
+    /// Error: BadChunk when the mesh is not a manifold. Safe on untrusted input.
+    [[nodiscard]] Result<void> finish()
     {
         for (GrownFace& face : mesh_.faces())
         {
@@ -96,9 +97,14 @@ public:
                 vertex = placer_.numbers()[vertex];
             }
         }
+        if (!placer_.check_manifold(mesh_))
+        {
+            return fail(ErrorCode::BadChunk, "the complete mesh is not a manifold");
+        }
         placer_ = VertexPlacer();
         surface_.reset();
         finished_ = true;
+        return {};
     }
 
     /// True after finish(): faces() and positions() are the complete mesh.

@@ -250,7 +250,7 @@ private:
         }
         if (chunk.ends_level)
         {
-            growth_->finish();
+            VSPLIT_TRY(growth_->finish());
             state_.mesh = RefinementMesh();
             step.first_moved_vertex = state_.shift > 0 ? 0 : step.first_moved_vertex;
             state_.shift = 0;

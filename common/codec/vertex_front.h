@@ -68,6 +68,9 @@ public:
     /// Final numbers by vertex.
     [[nodiscard]] const std::vector<std::uint32_t>& numbers() const { return number_; }
 
+    /// Gives the memory of the numbers away; only for when they are not needed any more.
+    [[nodiscard]] std::vector<std::uint32_t>& release() { return number_; }
+
     /// Vertices placed so far.
     [[nodiscard]] std::uint32_t placed() const { return placed_; }
 

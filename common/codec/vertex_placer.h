@@ -4,6 +4,7 @@
 // where a vertex is expected, the others are coded against the traversal's prediction and its surface.
 
 #include "codec/coarse_surface.h"
+#include "codec/grown_check.h"
 #include "codec/grown_mesh.h"
 #include "codec/growth_model.h"
 #include "codec/growth_source.h"
@@ -67,6 +68,13 @@ public:
             }
         }
         return {};
+    }
+
+    /// Says whether a mesh whose vertices are all placed is a manifold. What was known of the vertices is
+    /// lost: its memory serves the check.
+    [[nodiscard]] bool check_manifold(const GrownMesh& mesh)
+    {
+        return is_manifold(mesh, front_.release(), hint_);
     }
 
     /// Final numbers by grown vertex.
