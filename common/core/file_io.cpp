@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <system_error>
@@ -36,7 +37,9 @@ bool write_all(std::FILE* file, std::span<const std::byte> bytes)
 
 bool write_and_flush(std::FILE* file, std::span<const std::byte> bytes)
 {
-    return write_all(file, bytes) && std::fflush(file) == 0 && ::fsync(::fileno(file)) == 0;
+    // Devices and pipes have nothing to synchronise: EINVAL.
+    return write_all(file, bytes) && std::fflush(file) == 0 &&
+           (::fsync(::fileno(file)) == 0 || errno == EINVAL);
 }
 
 }  // namespace
@@ -77,7 +80,13 @@ Result<void> write_file_atomically(
     const std::filesystem::path& path, std::span<const std::byte> bytes
 )
 {
-    const std::string temporary = path.string() + "." + std::to_string(::getpid()) + ".tmp";
+    // A device or a pipe stays what it is: nothing may take its place.
+    std::error_code ignored;
+    const auto status = std::filesystem::status(path, ignored);
+    const bool replace =
+        !std::filesystem::exists(status) || std::filesystem::is_regular_file(status);
+    const std::string temporary =
+        replace ? path.string() + "." + std::to_string(::getpid()) + ".tmp" : path.string();
     File file(std::fopen(temporary.c_str(), "wb"));
     if (!file)
     {
@@ -86,10 +95,17 @@ Result<void> write_file_atomically(
     const bool written = write_and_flush(file.get(), bytes);
     const std::string why = reason();
     file.reset();
+    if (written && !replace)
+    {
+        return {};
+    }
     if (!written || std::rename(temporary.c_str(), path.c_str()) != 0)
     {
         const std::string message = written ? reason() : why;
-        std::remove(temporary.c_str());
+        if (replace)
+        {
+            std::remove(temporary.c_str());
+        }
         return fail(ErrorCode::IoError, "cannot write " + path.string() + ": " + message);
     }
     return {};

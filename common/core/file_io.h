@@ -17,7 +17,8 @@ namespace vsplit {
 );
 
 /// Writes a file so that it appears under its name complete or not at all: written beside the target,
-/// flushed, renamed. An existing file is replaced. Error: IoError; nothing is left behind then.
+/// flushed, renamed. An existing file is replaced; a device or pipe is written to as it is. Error:
+/// IoError; nothing is left behind then.
 [[nodiscard]] Result<void> write_file_atomically(
     const std::filesystem::path& path, std::span<const std::byte> bytes
 );

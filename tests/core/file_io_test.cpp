@@ -3,7 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
+#include <sys/stat.h>
+#include <thread>
 #include <unistd.h>
 #include <vector>
 
@@ -72,6 +76,22 @@ TEST_F(FileIo, LeavesNothingBehindWhenTheTargetCannotBeReplaced)
     EXPECT_EQ(result.error().code, ErrorCode::IoError);
     EXPECT_EQ(files_in_folder(), 1U);
     EXPECT_TRUE(fs::is_directory(folder_ / "taken"));
+}
+
+TEST_F(FileIo, WritesIntoAPipeInsteadOfTakingItsPlace)
+{
+    const fs::path pipe = folder_ / "pipe";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    std::size_t received = 0;
+    std::jthread reader([&] {
+        std::ifstream in(pipe, std::ios::binary);
+        received = std::string(std::istreambuf_iterator<char>(in), {}).size();
+    });
+    const auto result = write_file_atomically(pipe, pattern(1000));
+    reader.join();
+    EXPECT_TRUE(result.has_value());
+    EXPECT_EQ(received, 1000U);
+    EXPECT_TRUE(fs::is_fifo(pipe));
 }
 
 TEST_F(FileIo, ReportsAFolderThatDoesNotExist)
