@@ -14,7 +14,20 @@ constexpr std::uint32_t kStep = 512;
 /// Length at which a chunk is closed: one more step keeps it within proto::kTargetChunkBytes.
 constexpr std::size_t kFullChunk = 48U * 1024U;
 
+/// Bits a vertex from which the rest may come as one level: finer prefixes hardly differ on a screen.
+/// Small meshes have few bytes at any rate, and less of them to gain.
+constexpr double kGrowthBits = 3.2;
+constexpr double kGrowthBitsOfSmall = 2.0;
+constexpr std::uint32_t kSmallMesh = 8000;
+
 }  // namespace
+
+bool shows_enough(std::size_t bytes, std::uint32_t vertices, int shift)
+{
+    const double bits = 8.0 * static_cast<double>(bytes) / vertices;
+    // Without a bit missing the surface is off by no more than a cell.
+    return shift == 0 || bits >= (vertices < kSmallMesh ? kGrowthBitsOfSmall : kGrowthBits);
+}
 
 Result<GrowthPlan> plan_growth(
     const GridMesh& mesh,

@@ -25,6 +25,10 @@ struct GrowthPlan
     std::size_t bytes = 0;  ///< Estimate of all chunks together.
 };
 
+/// Says whether a prefix shows enough for the rest to come as one level, which is not seen before it is
+/// complete. `bytes`: of the chunks so far; `vertices`: of the complete mesh; `shift`: of the prefix's level.
+[[nodiscard]] bool shows_enough(std::size_t bytes, std::uint32_t vertices, int shift);
+
 /// Finds where to cut the growth of a mesh over the coarse mesh in `state`, without writing it.
 /// `mesh`: the complete mesh; `coarse`: by its vertices their numbers in the coarse mesh, or
 /// GrowthSource::kNone.

@@ -28,9 +28,6 @@ constexpr std::size_t kHeaderBytes = 90;
 /// A chunk costs about seven bytes of its own; where the prefix is long, shorter ones bring nothing.
 constexpr std::size_t kSmallestChunkBytes = 700;
 
-/// Bits a vertex from which the rest may come as one level: finer prefixes hardly differ on a screen.
-constexpr double kGrowthBits = 2.6;
-
 /// Builds the stream chunk by chunk, keeping the mesh as the decoder will have it.
 class StreamBuilder
 {
@@ -295,12 +292,10 @@ private:
         return static_cast<std::uint32_t>(plan_.mesh->triangles.size());
     }
 
-    /// True when the prefix up to a level shows enough for the rest to come as one level.
     bool may_grow_from(std::size_t level) const
     {
-        const double bits = 8.0 * static_cast<double>(payload_.size()) / plan_vertices();
         return plan_.grow_last_level && level + 1 < plan_.levels.size() &&
-               (bits >= kGrowthBits || plan_.levels[level].shift == 0);
+               shows_enough(payload_.size(), plan_vertices(), plan_.levels[level].shift);
     }
 
     /// Codes the complete mesh over the present level.
