@@ -79,6 +79,10 @@ inline void check_stream(std::span<const std::byte> file, std::size_t piece)
             require(update.slot < triangles.size());
             triangles[update.slot] = update.vertices;
         }
+        if (step->triangles_replaced)
+        {
+            decoder.write_triangles(triangles);
+        }
         const std::size_t taken = decoder.feed(file.first(std::min(piece, file.size()))).value();
         file = file.subspan(taken);
         if (step->kind == codec::StepKind::Complete ||
