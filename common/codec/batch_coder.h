@@ -9,6 +9,7 @@
 #include "codec/refinement_coder.h"
 #include "codec/refinement_mesh.h"
 #include "codec/split_cost.h"
+#include "core/boxed.h"
 #include "core/result.h"
 
 #include <algorithm>
@@ -24,7 +25,7 @@ namespace vsplit::codec {
 struct BatchState
 {
     RefinementMesh mesh;
-    LearnedModel model = initial_model();
+    Boxed<LearnedModel> model{initial_model()};
     PredictionWeights weights = kInitialWeights;
     LearningRates rates;
     std::vector<Split> splits;     ///< Of the current chunk.
@@ -36,6 +37,13 @@ struct BatchState
     int steps = 0;                 ///< Bits of precision that the level's start still adds.
     bool moving = false;           ///< Whether it may take vertices out of their cells.
     std::uint32_t refined = 0;     ///< Vertices that have these bits.
+
+    /// Gives memory back that only splits need. No chunk of splits may follow.
+    void end_splits()
+    {
+        model.release();
+        splits = {};
+    }
 
     /// Largest coordinate on the current grid.
     [[nodiscard]] std::int32_t max_index() const { return ((1 << bits) - 1) >> shift; }
@@ -136,7 +144,7 @@ template <typename Coder>
                 }
             }
             added = state.moving
-                        ? code_step(coder, state.model.refinement, added, state.steps, left)
+                        ? code_step(coder, state.model->refinement, added, state.steps, left)
                         : static_cast<std::int32_t>(
                               coder.raw(static_cast<std::uint32_t>(added), state.steps)
                           );
@@ -171,7 +179,7 @@ template <typename Coder>
 {
     state.splits.clear();
     ConnectivityCoder<Coder> connectivity(
-        state.mesh, state.model.connectivity, coder, state.rates, plan
+        state.mesh, state.model->connectivity, coder, state.rates, plan
     );
     if (!connectivity.run(state.cursor, state.batch_faces, count, state.splits))
     {
@@ -238,7 +246,7 @@ template <typename Coder>
         }
         const auto position = code_position(
             coder,
-            state.model.geometry,
+            state.model->geometry,
             frames.prediction(place),
             splits[i].kind != SplitKind::Interior,
             wanted

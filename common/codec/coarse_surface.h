@@ -51,52 +51,61 @@ public:
         std::size_t size = 0;
     };
 
-    /// Walks from a face to the one that a point lies above, a few steps at most. Returns a face.
-    [[nodiscard]] std::int32_t walk(std::int32_t face, const Vector3& point) const
+    /// A face with its corners and twice its vector area.
+    struct Ground
+    {
+        std::int32_t face = -1;
+        std::array<Vector3, 3> corner{};
+        Vector3 area{};
+    };
+
+    /// Walks from a face to the one that a point lies above, a few steps at most. The result is valid until
+    /// the next call or meet().
+    [[nodiscard]] const Ground& walk(std::int32_t face, const Vector3& point)
     {
         constexpr int kMostSteps = 12;
+        // Most vertices lie above the face of the one before.
+        if (face != ground_.face)
+        {
+            ground_ = ground_of(face);
+        }
         for (int i = 0; i < kMostSteps; ++i)
         {
-            const Corner beyond = leaves_across(face, point);
+            const Corner beyond = leaves_across(ground_, point);
             if (beyond < 0)
             {
                 break;
             }
-            face = face_of(beyond);
+            ground_ = ground_of(face_of(beyond));
         }
-        return face;
+        return ground_;
     }
 
     /// Finds the vertices of a face and of its neighbours that have not been met.
-    [[nodiscard]] Candidates candidates(std::int32_t face, const Vector3& point) const
+    [[nodiscard]] Candidates candidates(const Ground& ground, const Vector3& place) const
     {
         Candidates found;
-        const Face& here = mesh_->faces()[face];
-        for (const std::uint32_t v : here.vertex)
+        const Face& here = mesh_->faces()[ground.face];
+        for (std::size_t k = 0; k < 3; ++k)
         {
-            add(found, v, point);
+            if (!is_met(here.vertex[k]))
+            {
+                add(found, here.vertex[k], ground.corner[k] - place);
+            }
         }
         for (const Corner beyond : here.opposite)
         {
-            if (beyond >= 0)
+            if (beyond < 0)
             {
-                add(found, mesh_->vertex(beyond), point);
+                continue;
+            }
+            const std::uint32_t vertex = mesh_->vertex(beyond);
+            if (!is_met(vertex))
+            {
+                add(found, vertex, point(vertex) - place);
             }
         }
         return found;
-    }
-
-    /// Twice the vector area of a face.
-    [[nodiscard]] Vector3 area(std::int32_t face) const
-    {
-        const Vector3 origin = corner_point(face, 0);
-        return cross(corner_point(face, 1) - origin, corner_point(face, 2) - origin);
-    }
-
-    /// Position of a face's k-th vertex.
-    [[nodiscard]] Vector3 corner_point(std::int32_t face, std::size_t k) const
-    {
-        return point(mesh_->faces()[face].vertex[k]);
     }
 
     /// Position of a vertex on the full grid: the centre of the cell that is known.
@@ -122,6 +131,7 @@ public:
     {
         met_[vertex] = 1;
         ++met_count_;
+        ground_.face = -1;  // the vertex is elsewhere now
     }
 
     /// Vertices met so far.
@@ -131,41 +141,46 @@ public:
     [[nodiscard]] std::uint32_t vertex_count() const { return mesh_->vertex_count(); }
 
 private:
+    [[nodiscard]] Ground ground_of(std::int32_t face) const
+    {
+        Ground ground{.face = face};
+        for (std::size_t k = 0; k < 3; ++k)
+        {
+            ground.corner[k] = point(mesh_->faces()[face].vertex[k]);
+        }
+        ground.area =
+            cross(ground.corner[1] - ground.corner[0], ground.corner[2] - ground.corner[0]);
+        return ground;
+    }
+
     /// The corner beyond the edge across which a point lies farthest outside; -1 when inside or at a
     /// boundary.
-    [[nodiscard]] Corner leaves_across(std::int32_t face, const Vector3& point) const
+    [[nodiscard]] Corner leaves_across(const Ground& ground, const Vector3& point) const
     {
-        const Face& here = mesh_->faces()[face];
-        const Vector3 normal = area(face);
         float worst = 0.0F;
         Corner beyond = -1;
         for (std::size_t k = 0; k < 3; ++k)
         {
-            const Vector3 from = corner_point(face, (k + 1) % 3);
-            const Vector3 edge = corner_point(face, (k + 2) % 3) - from;
-            const float side = dot(cross(edge, point - from), normal);
+            const Vector3& from = ground.corner[(k + 1) % 3];
+            const Vector3 edge = ground.corner[(k + 2) % 3] - from;
+            const float side = dot(cross(edge, point - from), ground.area);
             if (side < 0.0F)
             {
                 const float outside = side * side / (dot(edge, edge) + 1.0F);
                 if (outside > worst)
                 {
                     worst = outside;
-                    beyond = here.opposite[k];
+                    beyond = mesh_->faces()[ground.face].opposite[k];
                 }
             }
         }
         return beyond;
     }
 
-    void add(Candidates& found, std::uint32_t vertex, const Vector3& place) const
+    /// Adds a vertex, `off` from the place asked, to the candidates.
+    static void add(Candidates& found, std::uint32_t vertex, const Vector3& off)
     {
-        if (is_met(vertex))
-        {
-            return;
-        }
-        const Vector3 off = point(vertex) - place;
         const float square = dot(off, off);
-        std::size_t i = found.size;
         for (std::size_t j = 0; j < found.size; ++j)
         {
             if (found.list[j].vertex == vertex)
@@ -173,6 +188,7 @@ private:
                 return;
             }
         }
+        std::size_t i = found.size;
         for (; i > 0 && found.list[i - 1].square > square; --i)
         {
             found.list[i] = found.list[i - 1];
@@ -187,6 +203,7 @@ private:
     std::vector<std::uint8_t> met_;
     std::vector<std::int32_t> face_of_;
     std::uint32_t met_count_ = 0;
+    Ground ground_;  ///< Where the last walk ended.
 };
 
 }  // namespace vsplit::codec

@@ -90,16 +90,16 @@ public:
     /// Error: BadChunk when the mesh is not a manifold. Safe on untrusted input.
     [[nodiscard]] Result<void> finish()
     {
+        if (!placer_.saw_manifold(mesh_))
+        {
+            return fail(ErrorCode::BadChunk, "the complete mesh is not a manifold");
+        }
         for (GrownFace& face : mesh_.faces())
         {
             for (std::uint32_t& vertex : face.vertex)
             {
                 vertex = placer_.numbers()[vertex];
             }
-        }
-        if (!placer_.check_manifold(mesh_))
-        {
-            return fail(ErrorCode::BadChunk, "the complete mesh is not a manifold");
         }
         placer_ = VertexPlacer();
         surface_.reset();

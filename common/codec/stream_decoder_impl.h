@@ -235,6 +235,7 @@ private:
     {
         if (!growth_)
         {
+            state_.end_splits();
             VSPLIT_TRY(take_memory([&] {
                 growth_ = std::make_unique<Growth>(info_->vertex_count, info_->face_count);
                 growth_->reserve();
@@ -280,6 +281,10 @@ private:
 
     Result<void> decode_batch(const ChunkInfo& chunk, std::span<const std::byte> bytes, Step& step)
     {
+        if (growth_)
+        {
+            return fail(ErrorCode::BadChunk, "splits follow a growth");
+        }
         BitDecoder bits;
         VSPLIT_TRY(bits.start(bytes));
         const bool starts = info_->chunks[next_ - 1].ends_level;

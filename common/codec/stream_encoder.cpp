@@ -47,7 +47,7 @@ public:
         }
         if (plan.training != nullptr)
         {
-            state_.model = *plan.training;
+            *state_.model = *plan.training;
         }
     }
 
@@ -75,7 +75,7 @@ public:
         }
         if (plan_.training != nullptr)
         {
-            *plan_.training = state_.model;
+            *plan_.training = *state_.model;
         }
         StreamBuilder& smaller = grown && grown->payload_.size() < payload_.size() ? *grown : *this;
         smaller.add_stitches();

@@ -13,29 +13,16 @@ namespace vsplit::codec {
 /// Number of a vertex that has not been placed.
 inline constexpr std::uint32_t kUnknownVertex = 0xFFFFFFFF;
 
-/// Calls `use(corner)` for every corner of a mesh at the vertex of `first`, in turn.
-template <typename Use>
-void for_each_corner_around(const GrownMesh& mesh, Corner first, const Use& use)
+/// A face at a vertex of a grown mesh, seen from that vertex.
+struct RingFace
 {
-    Corner corner = first;
-    do
-    {
-        use(corner);
-        const Corner beyond = mesh.opposite(next_corner(corner));
-        corner = beyond < 0 ? -1 : next_corner(beyond);
-    }
-    while (corner >= 0 && corner != first);
-    if (corner >= 0)
-    {
-        return;
-    }
-    for (Corner beyond = mesh.opposite(previous_corner(first)); beyond >= 0;
-         beyond = mesh.opposite(previous_corner(corner)))
-    {
-        corner = previous_corner(beyond);
-        use(corner);
-    }
-}
+    Corner corner = -1;             ///< At the vertex.
+    std::uint32_t next = 0;         ///< The vertex after it in the face.
+    std::uint32_t previous = 0;     ///< The one before it.
+    std::uint32_t next_number = 0;  ///< Its final number, or kUnknownVertex.
+    std::uint32_t previous_number = 0;
+    bool ends = false;  ///< No face follows across the edge to `previous`.
+};
 
 /// Which vertices of a grown mesh are placed, and in which order the others come. Not thread safe.
 class VertexFront
@@ -67,9 +54,6 @@ public:
 
     /// Final numbers by vertex.
     [[nodiscard]] const std::vector<std::uint32_t>& numbers() const { return number_; }
-
-    /// Gives the memory of the numbers away; only for when they are not needed any more.
-    [[nodiscard]] std::vector<std::uint32_t>& release() { return number_; }
 
     /// Vertices placed so far.
     [[nodiscard]] std::uint32_t placed() const { return placed_; }
@@ -103,33 +87,107 @@ public:
         return -1;
     }
 
-    /// Gives the vertex of a corner its number, and its neighbours their turn. False when more would
-    /// wait than may.
-    [[nodiscard]] bool place(const GrownMesh& mesh, Corner corner, std::uint32_t number)
+    /// Looks at the faces around the vertex of a corner: those of its fan, from the corner on. To be called
+    /// once for every vertex, before place(); the result is valid until the next call.
+    [[nodiscard]] const std::vector<RingFace>& look_around(const GrownMesh& mesh, Corner first)
     {
-        number_[mesh.vertex(corner)] = number;
+        ring_.clear();
+        Corner corner = first;
+        do
+        {
+            corner = see(mesh, corner);
+        }
+        while (corner >= 0 && corner != first);
+        if (corner < 0)
+        {
+            for (Corner beyond = mesh.opposite(previous_corner(first)); beyond >= 0;
+                 beyond = mesh.opposite(previous_corner(corner)))
+            {
+                corner = previous_corner(beyond);
+                static_cast<void>(see(mesh, corner));
+            }
+        }
+        corners_ += ring_.size();
+        check_distinct();
+        return ring_;
+    }
+
+    /// True when every fan looked at was all that its vertex has, and no two of a vertex's edges led to
+    /// the same one: once all are placed, whether the mesh is a 2-manifold with boundary.
+    [[nodiscard]] bool saw_manifold(const GrownMesh& mesh) const
+    {
+        return distinct_ && corners_ == 3 * std::uint64_t{mesh.face_count()};
+    }
+
+    /// Gives the vertex last looked at its number, and its neighbours their turn. False when more would
+    /// wait than may.
+    [[nodiscard]] bool place(const GrownMesh& mesh, std::uint32_t number)
+    {
+        number_[mesh.vertex(ring_.front().corner)] = number;
         ++placed_;
         bool fits = true;
-        for_each_corner_around(mesh, corner, [&](Corner at) {
-            const Corner next = next_corner(at);
-            const Corner previous = previous_corner(at);
-            const bool next_known = is_known(mesh.vertex(next));
-            if (next_known == is_known(mesh.vertex(previous)))
+        for (const RingFace& face : ring_)
+        {
+            const bool next_known = face.next_number != kUnknownVertex;
+            if (next_known == (face.previous_number != kUnknownVertex))
             {
-                return;
+                continue;
             }
-            const Corner waiting = next_known ? previous : next;
-            std::uint8_t& faces = known_faces_[mesh.vertex(waiting)];
+            std::uint8_t& faces = known_faces_[next_known ? face.previous : face.next];
             if (faces < 2)
             {
                 ++faces;
-                fits = fits && add(mesh, faces > 1 ? likely_ : possible_, waiting);
+                const Corner corner = face.corner;
+                fits = fits && add(mesh,
+                                   faces > 1 ? likely_ : possible_,
+                                   next_known ? previous_corner(corner) : next_corner(corner));
             }
-        });
+        }
         return fits;
     }
 
 private:
+    static constexpr std::uint8_t kMark = 0x80;
+
+    /// Adds the face of a corner to the ring. Returns the corner of the face that follows, or -1.
+    Corner see(const GrownMesh& mesh, Corner corner)
+    {
+        const Corner next = next_corner(corner);
+        RingFace& face = ring_.emplace_back();
+        face.corner = corner;
+        face.next = mesh.vertex(next);
+        face.previous = mesh.vertex(previous_corner(corner));
+        face.next_number = number_[face.next];
+        face.previous_number = number_[face.previous];
+        const Corner beyond = mesh.opposite(next);
+        face.ends = beyond < 0;
+        return beyond < 0 ? -1 : next_corner(beyond);
+    }
+
+    /// Marks the neighbours and takes the marks away again.
+    void check_distinct()
+    {
+        std::uint8_t seen = 0;
+        const auto mark = [&](std::uint32_t vertex) {
+            seen |= known_faces_[vertex];
+            known_faces_[vertex] |= kMark;
+        };
+        for (const RingFace& face : ring_)
+        {
+            mark(face.next);
+            if (face.ends)
+            {
+                mark(face.previous);
+            }
+        }
+        for (const RingFace& face : ring_)
+        {
+            known_faces_[face.next] &= static_cast<std::uint8_t>(~kMark);
+            known_faces_[face.previous] &= static_cast<std::uint8_t>(~kMark);
+        }
+        distinct_ = distinct_ && (seen & kMark) == 0;
+    }
+
     /// Adds a corner to a list. When that is full, corners whose vertex was placed meanwhile make room.
     bool add(const GrownMesh& mesh, std::vector<Corner>& list, Corner corner)
     {
@@ -145,10 +203,14 @@ private:
         return true;
     }
 
-    std::vector<std::uint32_t> number_;      ///< By vertex.
-    std::vector<std::uint8_t> known_faces_;  ///< By vertex: faces with both others known, to 2.
-    std::vector<Corner> likely_;             ///< At vertices with two such faces or more.
-    std::vector<Corner> possible_;           ///< At vertices with one.
+    std::vector<std::uint32_t> number_;  ///< By vertex.
+    std::vector<std::uint8_t>
+        known_faces_;             ///< By vertex: faces with both others known, to 2; kMark.
+    std::vector<RingFace> ring_;  ///< Around the vertex last looked at.
+    std::uint64_t corners_ = 0;   ///< In all rings.
+    bool distinct_ = true;
+    std::vector<Corner> likely_;    ///< At vertices with two such faces or more.
+    std::vector<Corner> possible_;  ///< At vertices with one.
     std::size_t most_ = 0;
     std::size_t seed_ = 0;
     std::uint32_t placed_ = 0;

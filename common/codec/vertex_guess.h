@@ -14,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace vsplit::codec {
@@ -76,19 +77,17 @@ struct Surroundings
     }
 };
 
-/// Looks at the neighbours of the unknown vertex at a corner.
+/// Gathers what the neighbours of an unknown vertex say, from the faces around it.
 [[nodiscard]] inline Surroundings look_around(
     const GrownMesh& mesh,
     const VertexFront& front,
+    std::span<const RingFace> ring,
     const GrownPositions& positions,
-    const std::vector<ResidualSizes>& sizes,
-    Corner corner
+    const std::vector<ResidualSizes>& sizes
 )
 {
     Surroundings seen;
-    const auto position = [&](std::uint32_t v) { return to_vector(positions[front.number(v)]); };
-    const auto see = [&](std::uint32_t v) {
-        const Vector3 place = position(v);
+    const auto see = [&](std::uint32_t v, const Vector3& place) {
         seen.mean = seen.mean + place;
         seen.tangential += sizes[v].tangential;
         seen.normal += sizes[v].normal;
@@ -96,28 +95,35 @@ struct Surroundings
         seen.some_position = place;
         ++seen.known;
     };
-    for_each_corner_around(mesh, corner, [&](Corner at) {
-        const std::uint32_t a = mesh.vertex(next_corner(at));
-        const std::uint32_t b = mesh.vertex(previous_corner(at));
-        if (front.is_known(a))
+    for (const RingFace& face : ring)
+    {
+        Vector3 next{};
+        const bool next_known = face.next_number != kUnknownVertex;
+        if (next_known)
         {
-            see(a);
+            next = to_vector(positions[face.next_number]);
+            see(face.next, next);
         }
-        if (!front.is_known(b))
+        if (face.previous_number == kUnknownVertex || !(next_known || face.ends))
         {
-            return;
+            continue;
         }
-        if (mesh.opposite(next_corner(at)) < 0)
+        const Vector3 previous = to_vector(positions[face.previous_number]);
+        if (face.ends)
         {
-            see(b);
+            see(face.previous, previous);
         }
-        const Corner beyond = mesh.opposite(at);
-        if (beyond >= 0 && front.is_known(a) && front.is_known(mesh.vertex(beyond)) &&
-            seen.guesses < Surroundings::kMostGuesses)
+        const Corner beyond = mesh.opposite(face.corner);
+        if (!next_known || beyond < 0 || seen.guesses == Surroundings::kMostGuesses)
         {
-            seen.guess[seen.guesses++] = position(a) + position(b) - position(mesh.vertex(beyond));
+            continue;
         }
-    });
+        const std::uint32_t across = front.number(mesh.vertex(beyond));
+        if (across != kUnknownVertex)
+        {
+            seen.guess[seen.guesses++] = next + previous - to_vector(positions[across]);
+        }
+    }
     if (seen.known > 0)
     {
         seen.mean = seen.mean * (1.0F / static_cast<float>(seen.known));

@@ -4,7 +4,6 @@
 // where a vertex is expected, the others are coded against the traversal's prediction and its surface.
 
 #include "codec/coarse_surface.h"
-#include "codec/grown_check.h"
 #include "codec/grown_mesh.h"
 #include "codec/growth_model.h"
 #include "codec/growth_source.h"
@@ -62,7 +61,7 @@ public:
             }
             const auto number = code_vertex(coder, mesh, surface, positions, model, corner, source);
             VSPLIT_TRY(number);
-            if (!front_.place(mesh, corner, *number))
+            if (!front_.place(mesh, *number))
             {
                 return fail(ErrorCode::BadChunk, "too many vertices wait to be placed");
             }
@@ -70,11 +69,10 @@ public:
         return {};
     }
 
-    /// Says whether a mesh whose vertices are all placed is a manifold. What was known of the vertices is
-    /// lost: its memory serves the check.
-    [[nodiscard]] bool check_manifold(const GrownMesh& mesh)
+    /// Says whether a mesh whose vertices are all placed is a manifold.
+    [[nodiscard]] bool saw_manifold(const GrownMesh& mesh) const
     {
-        return is_manifold(mesh, front_.release(), hint_);
+        return front_.saw_manifold(mesh);
     }
 
     /// Final numbers by grown vertex.
@@ -109,7 +107,8 @@ private:
         {
             wanted = {source->coarse(vertex), source->position(vertex)};
         }
-        const Surroundings seen = look_around(mesh, front_, positions, sizes_, corner);
+        const auto& ring = front_.look_around(mesh, corner);
+        const Surroundings seen = look_around(mesh, front_, ring, positions, sizes_);
         if (seen.known == 0)
         {
             // The first vertex of a component is a coarse one.
@@ -119,12 +118,13 @@ private:
             return meet(coder, surface, positions, model, vertex, *number, expected, wanted);
         }
         const Vector3 expected = seen.average();
-        hint_[vertex] = surface.walk(hint_[seen.some], expected);
-        const auto near = surface.candidates(hint_[vertex], expected);
+        const auto& ground = surface.walk(hint_[seen.some], expected);
+        hint_[vertex] = ground.face;
+        const auto near = surface.candidates(ground, expected);
         const bool coarse = wanted.coarse != kUnknownVertex;
         if (!code_is_coarse(coder, model, near, seen, expected, coarse))
         {
-            return code_new(coder, surface, positions, model, vertex, seen, expected, wanted);
+            return code_new(coder, ground, positions, model, vertex, seen, expected, wanted);
         }
         sizes_[vertex] = {
             static_cast<std::uint8_t>(seen.tangential), static_cast<std::uint8_t>(seen.normal)};
@@ -137,7 +137,7 @@ private:
     template <typename Coder>
     Result<std::uint32_t> code_new(
         Coder& coder,
-        const CoarseSurface& surface,
+        const CoarseSurface::Ground& ground,
         GrownPositions& positions,
         GrowthModel& model,
         std::uint32_t vertex,
@@ -150,8 +150,7 @@ private:
         const auto position = code_residual(
             coder,
             model,
-            surface,
-            hint_[vertex],
+            ground,
             surface_share_,
             seen,
             kind,

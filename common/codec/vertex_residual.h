@@ -22,14 +22,13 @@ namespace vsplit::codec {
 }
 
 /// Codes a position against its expected one: two axes first, the steepest last, given the other two
-/// and the plane of the coarse face below. `surface_share`: how far the plane counts, 0 .. 1; `sizes`:
+/// and the plane of the coarse face below, `ground`. `surface_share`: how far the plane counts, 0 .. 1; `sizes`:
 /// those of the residuals afterwards; `wanted`: encoder only.
 template <typename Coder>
 [[nodiscard]] std::array<std::int32_t, 3> code_residual(
     Coder& coder,
     GrowthModel& model,
-    const CoarseSurface& surface,
-    std::int32_t face,
+    const CoarseSurface::Ground& ground,
     float surface_share,
     const Surroundings& seen,
     GuessKind kind,
@@ -38,7 +37,7 @@ template <typename Coder>
     ResidualSizes& sizes
 )
 {
-    const Vector3 area = surface.area(face);
+    const Vector3& area = ground.area;
     const std::array<float, 3> guess{expected.x, expected.y, expected.z};
     const std::array<float, 3> normal{area.x, area.y, area.z};
     const std::size_t last = steepest_axis(normal);
@@ -60,7 +59,7 @@ template <typename Coder>
     float expected_last = guess[last];
     if (normal[last] != 0.0F)
     {
-        const Vector3 to_plane = surface.corner_point(face, 0) - expected;
+        const Vector3 to_plane = ground.corner[0] - expected;
         const float height = dot(to_plane, area) * surface_share;
         const float slope = normal[first] * off_first + normal[second] * off_second;
         expected_last += (height - slope) / normal[last];
