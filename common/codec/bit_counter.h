@@ -67,4 +67,35 @@ private:
     std::uint64_t cost_ = 0;  ///< 1/256 bit.
 };
 
+/// A BitEncoder that tells how long its chunk will be. Not thread safe.
+class MeasuredEncoder
+{
+public:
+    static constexpr bool kEncodes = true;
+
+    /// As BitEncoder::bit().
+    bool bit(std::uint32_t one_probability, bool value)
+    {
+        counter_.bit(one_probability, value);
+        return bits_.bit(one_probability, value);
+    }
+
+    /// As BitEncoder::raw().
+    std::uint32_t raw(std::uint32_t value, int count)
+    {
+        counter_.raw(value, count);
+        return bits_.raw(value, count);
+    }
+
+    /// Bytes so far, rounded up.
+    [[nodiscard]] std::size_t bytes() const { return counter_.bytes(); }
+
+    /// What was taken.
+    [[nodiscard]] const BitEncoder& bits() const { return bits_; }
+
+private:
+    BitEncoder bits_;
+    BitCounter counter_;
+};
+
 }  // namespace vsplit::codec

@@ -18,6 +18,16 @@ std::uint32_t BitEncoder::raw(std::uint32_t value, int count)
     return kept;
 }
 
+void BitEncoder::append(const BitEncoder& other)
+{
+    modelled_.insert(modelled_.end(), other.modelled_.begin(), other.modelled_.end());
+    for (const std::byte byte : other.raw_)
+    {
+        raw(static_cast<std::uint32_t>(byte), 8);
+    }
+    raw(static_cast<std::uint32_t>(other.pending_), other.pending_bits_);
+}
+
 void BitEncoder::finish(ByteWriter& out)
 {
     if (pending_bits_ > 0)

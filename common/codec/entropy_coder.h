@@ -45,6 +45,9 @@ public:
     /// Takes the low `count` (0 .. 32) bits of `value` as they are; returns them.
     std::uint32_t raw(std::uint32_t value, int count);
 
+    /// Takes the bits that another encoder took.
+    void append(const BitEncoder& other);
+
     /// Appends the chunk's bytes to `out` and forgets its bits. Precondition: none. Layout: raw part,
     /// read forwards, then rANS part, read backwards (proto/STREAM_FORMAT.md, "Bit streams").
     void finish(ByteWriter& out);

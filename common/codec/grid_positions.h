@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -58,5 +59,36 @@ private:
     const GridMesh& mesh_;
     std::vector<std::array<std::int32_t, 3>> cells_;
 };
+
+/// A base mesh and by its vertices those of the plan.
+struct CollectedBase
+{
+    GridMesh mesh;
+    std::vector<std::uint32_t> sources;
+};
+
+/// Collects the vertices of triangles, by index in the plan, in the order in which they occur.
+[[nodiscard]] inline CollectedBase collect_base(
+    std::span<const Triangle> triangles, const GridPositions& on_grid
+)
+{
+    CollectedBase base;
+    std::map<std::uint32_t, std::uint32_t> place;
+    for (Triangle triangle : triangles)
+    {
+        for (std::uint32_t& v : triangle)
+        {
+            const auto [found, is_new] = place.try_emplace(v, base.sources.size());
+            if (is_new)
+            {
+                base.sources.push_back(v);
+                base.mesh.positions.push_back(on_grid[v]);
+            }
+            v = found->second;
+        }
+        base.mesh.triangles.push_back(triangle);
+    }
+    return base;
+}
 
 }  // namespace vsplit::codec

@@ -32,8 +32,10 @@ struct GrowthShare
 class Growth
 {
 public:
-    /// Weight of the coarse surface against the prediction, eighths, is less than this.
+    /// Bits of the fields of PredictionShares.
     static constexpr int kSurfaceShareBits = 3;
+    static constexpr int kCurvedShareBits = 4;
+    static constexpr int kMostCurvedShare = 8;
 
     /// Prepares for a mesh of known size. The coarse mesh must not change after the first chunk.
     Growth(std::uint32_t vertices, std::uint32_t faces) : vertices_(vertices), faces_(faces) {}
@@ -45,23 +47,60 @@ public:
         positions_.reserve(vertices_);
     }
 
-    /// Codes one chunk. `full`, `share`, `surface_share`, `source`: encoder only, as for
-    /// code_level_start(), what the chunk is to hold, weight of the surface, what to code.
+    /// Codes one chunk. `share`, `predicted`, `source`: encoder only, what the chunk is to hold, what
+    /// positions are predicted from, what to code.
     /// Error: BadChunk. Safe on untrusted input.
     template <typename Coder>
     [[nodiscard]] Result<void> run(
-        Coder& coder, BatchState& state, GrowthShare share, int surface_share, GrowthSource* source
+        Coder& coder,
+        BatchState& state,
+        GrowthShare share,
+        const PredictionShares& predicted,
+        GrowthSource* source
     )
     {
         if (!surface_)
         {
-            surface_share_ = static_cast<int>(
-                coder.raw(static_cast<std::uint32_t>(surface_share), kSurfaceShareBits)
-            );
-            start(state);
+            VSPLIT_TRY(begin(coder, state, predicted));
         }
-        share.faces = code_count(coder, share.faces);
-        share.vertices = code_count(coder, share.vertices);
+        return extend(coder, state, code_share(coder, share), source);
+    }
+
+    /// Codes what stands at the beginning of the first chunk. Arguments and errors as for run().
+    template <typename Coder>
+    [[nodiscard]] Result<void> begin(
+        Coder& coder, BatchState& state, const PredictionShares& predicted
+    )
+    {
+        const auto code = [&](int value, int bits) {
+            return static_cast<int>(coder.raw(static_cast<std::uint32_t>(value), bits));
+        };
+        predicted_.surface = code(predicted.surface, kSurfaceShareBits);
+        predicted_.curved = code(predicted.curved, kCurvedShareBits);
+        if (predicted_.curved > kMostCurvedShare)
+        {
+            return fail(ErrorCode::BadChunk, "predictions bend further than they may");
+        }
+        start(state);
+        return {};
+    }
+
+    /// Codes what stands at the beginning of every chunk. `share`: encoder only; returned.
+    template <typename Coder>
+    [[nodiscard]] static GrowthShare code_share(Coder& coder, const GrowthShare& share)
+    {
+        GrowthShare coded;
+        coded.faces = code_count(coder, share.faces);
+        coded.vertices = code_count(coder, share.vertices);
+        return coded;
+    }
+
+    /// Codes faces and vertices. Arguments and errors as for run().
+    template <typename Coder>
+    [[nodiscard]] Result<void> extend(
+        Coder& coder, const BatchState& state, const GrowthShare& share, GrowthSource* source
+    )
+    {
         if (share.faces > faces_ - mesh_.face_count())
         {
             return fail(ErrorCode::BadChunk, "a chunk grows more faces than there are");
@@ -154,14 +193,14 @@ private:
         }
         mesh_.finish();
         grower_.finish();
-        placer_.start(mesh_, (1 << state.bits) - 1, shift_, surface_share_);
+        placer_.start(mesh_, (1 << state.bits) - 1, shift_, predicted_);
         return {};
     }
 
     std::uint32_t vertices_;
     std::uint32_t faces_;
     int shift_ = 0;
-    int surface_share_ = 0;
+    PredictionShares predicted_;
     bool finished_ = false;
     GrownMesh mesh_;
     FaceGrower grower_;

@@ -14,72 +14,115 @@ constexpr std::uint32_t kStep = 512;
 /// Length at which a chunk is closed: one more step keeps it within proto::kTargetChunkBytes.
 constexpr std::size_t kFullChunk = 48U * 1024U;
 
-/// Bits a vertex from which the rest may come as one level: finer prefixes hardly differ on a screen.
-/// Small meshes have few bytes at any rate, and less of them to gain.
+/// Vertices by which predictions are compared, when there are so many.
+constexpr std::uint32_t kFewestTried = 4000;
+
+/// Bits a vertex from which the rest may come as one level: finer prefixes hardly differ on a screen. Small
+/// meshes have few bytes at any rate, so that less will do for them where it saves enough.
 constexpr double kGrowthBits = 3.2;
-constexpr double kGrowthBitsOfSmall = 2.0;
+constexpr double kFewestGrowthBits = 2.0;
 constexpr std::uint32_t kSmallMesh = 8000;
+
+/// The same on the full grid: without a bit missing the surface is off by about a cell.
+constexpr double kGrowthBitsOnGrid = 1.2;
+
+/// Share of the bytes that growing has to save: less is not worth that nothing shows meanwhile.
+constexpr std::size_t kSavesOneIn = 24;
 
 }  // namespace
 
-bool shows_enough(std::size_t bytes, std::uint32_t vertices, int shift)
+GrowthStart growth_start(std::size_t bytes, std::uint32_t vertices, int shift)
 {
     const double bits = 8.0 * static_cast<double>(bytes) / vertices;
-    // Without a bit missing the surface is off by no more than a cell.
-    return shift == 0 || bits >= (vertices < kSmallMesh ? kGrowthBitsOfSmall : kGrowthBits);
+    const bool is_small = vertices < kSmallMesh;
+    if (bits >= kGrowthBits || (shift == 0 && !is_small && bits >= kGrowthBitsOnGrid))
+    {
+        return GrowthStart::Now;
+    }
+    return is_small && bits >= kFewestGrowthBits ? GrowthStart::IfNeeded : GrowthStart::Never;
 }
 
-Result<GrowthPlan> plan_growth(
-    const GridMesh& mesh,
-    std::span<const std::uint32_t> coarse,
-    const BatchState& state,
-    int surface_share
+bool growth_pays(std::size_t grown, std::size_t split)
+{
+    return grown + split / kSavesOneIn <= split;
+}
+
+namespace {
+
+/// Bytes of a growth up to some vertices.
+Result<std::size_t> try_growth(
+    GrowthSource& source, const BatchState& state, const PredictionShares& predicted
 )
 {
     BatchState trial = state;
-    GrowthSource source(mesh, coarse);
-    const auto vertices = static_cast<std::uint32_t>(mesh.positions.size());
-    const auto faces = static_cast<std::uint32_t>(mesh.triangles.size());
-    Growth growth(vertices, faces);
+    Growth growth(source.vertex_count(), source.face_count());
     BitCounter bits;
-    GrowthPlan plan{.chunks = {{}}, .surface_share = surface_share};
-    std::uint32_t faces_left = faces;
-    std::uint32_t vertices_left = vertices;
-    std::size_t start = 0;
-    while (faces_left > 0 || vertices_left > 0)
-    {
-        GrowthShare share;
-        share.faces = std::min(faces_left, kStep);
-        share.vertices = faces_left > 0 ? 0 : std::min(vertices_left, kStep);
-        VSPLIT_TRY(growth.run(bits, trial, share, surface_share, &source));
-        faces_left -= share.faces;
-        vertices_left -= share.vertices;
-        plan.chunks.back().faces += share.faces;
-        plan.chunks.back().vertices += share.vertices;
-        if (bits.bytes() - start > kFullChunk && faces_left + vertices_left > 0)
-        {
-            start = bits.bytes();
-            plan.chunks.emplace_back();
-        }
-    }
-    plan.bytes = bits.bytes();
-    return plan;
+    VSPLIT_TRY(growth.begin(bits, trial, predicted));
+    const std::uint32_t vertices =
+        std::min(source.vertex_count(), std::max(kFewestTried, source.vertex_count() / 8));
+    VSPLIT_TRY(growth.extend(bits, trial, {.faces = source.face_count()}, &source));
+    VSPLIT_TRY(growth.extend(bits, trial, {.vertices = vertices}, &source));
+    return bits.bytes();
 }
 
-std::optional<GrowthPlan> cheapest_growth(
-    const GridMesh& mesh, std::span<const std::uint32_t> coarse, const BatchState& state
-)
+}  // namespace
+
+std::optional<PredictionShares> choose_predictions(GrowthSource& source, const BatchState& state)
 {
-    std::optional<GrowthPlan> best;
-    for (const int share : kSurfaceShares)
+    std::optional<PredictionShares> best;
+    std::size_t least = 0;
+    for (const PredictionShares& predicted : kPredictions)
     {
-        auto plan = plan_growth(mesh, coarse, state, share);
-        if (plan && (!best || plan->bytes < best->bytes))
+        source.restart();
+        const auto bytes = try_growth(source, state, predicted);
+        if (bytes && (!best || *bytes < least))
         {
-            best = std::move(*plan);
+            best = predicted;
+            least = *bytes;
         }
     }
     return best;
+}
+
+Result<CodedGrowth> code_growth(
+    GrowthSource& source, const BatchState& state, const PredictionShares& predicted
+)
+{
+    BatchState grown = state;
+    Growth growth(source.vertex_count(), source.face_count());
+    BitEncoder head;
+    VSPLIT_TRY(growth.begin(head, grown, predicted));
+    CodedGrowth coded;
+    GrowthShare left{source.face_count(), source.vertex_count()};
+    while (left.faces > 0 || left.vertices > 0)
+    {
+        GrowthShare share;
+        MeasuredEncoder body;
+        while (body.bytes() <= kFullChunk && (left.faces > 0 || left.vertices > 0))
+        {
+            GrowthShare step;
+            step.faces = std::min(left.faces, kStep);
+            step.vertices = left.faces > 0 ? 0 : std::min(left.vertices, kStep);
+            VSPLIT_TRY(growth.extend(body, grown, step, &source));
+            left = {left.faces - step.faces, left.vertices - step.vertices};
+            share = {share.faces + step.faces, share.vertices + step.vertices};
+        }
+        static_cast<void>(Growth::code_share(head, share));
+        head.append(body.bits());
+        ByteWriter chunk;
+        head.finish(chunk);
+        coded.chunks.emplace_back(chunk.view().begin(), chunk.view().end());
+    }
+    if (!growth.complete())
+    {
+        return fail(ErrorCode::Internal, "the growth does not reach the complete mesh");
+    }
+    coded.sources.resize(growth.numbers().size());
+    for (std::uint32_t t = 0; t < coded.sources.size(); ++t)
+    {
+        coded.sources[growth.numbers()[t]] = source.vertex(t);
+    }
+    return coded;
 }
 
 }  // namespace vsplit::codec

@@ -3,48 +3,56 @@
 #include "codec/batch_coder.h"
 #include "codec/growth_coder.h"
 #include "core/result.h"
-#include "mesh/indexed_mesh.h"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <vector>
 
 namespace vsplit::codec {
 
-/// Weights of the coarse surface that an encoder tries, eighths.
-inline constexpr std::array<int, 2> kSurfaceShares{0, 3};
+/// What an encoder tries to predict positions from: scans are followed best along their surface, designed
+/// and subdivided meshes along their curves.
+inline constexpr std::array<PredictionShares, 3> kPredictions{
+    {{.surface = 0, .curved = 0}, {.surface = 3, .curved = 0}, {.surface = 0, .curved = 8}}};
 
-/// How a growth is cut into chunks, and what it costs.
-struct GrowthPlan
+/// Whether the rest of a stream may come as one level, which is not seen before it is complete.
+enum class GrowthStart : std::uint8_t
 {
-    std::vector<GrowthShare> chunks;
-    int surface_share = 0;
-    std::size_t bytes = 0;  ///< Estimate of all chunks together.
+    Never,     ///< A prefix shows too little.
+    IfNeeded,  ///< It would do, but more is better.
+    Now,       ///< It shows enough.
 };
 
-/// Says whether a prefix shows enough for the rest to come as one level, which is not seen before it is
-/// complete. `bytes`: of the chunks so far; `vertices`: of the complete mesh; `shift`: of the prefix's level.
-[[nodiscard]] bool shows_enough(std::size_t bytes, std::uint32_t vertices, int shift);
+/// Judges a prefix. `bytes`: of the chunks so far; `vertices`: of the complete mesh; `shift`: of the
+/// prefix's level.
+[[nodiscard]] GrowthStart growth_start(std::size_t bytes, std::uint32_t vertices, int shift);
 
-/// Finds where to cut the growth of a mesh over the coarse mesh in `state`, without writing it.
-/// `mesh`: the complete mesh; `coarse`: by its vertices their numbers in the coarse mesh, or
-/// GrowthSource::kNone.
-/// Errors: Internal (not a manifold, a component without a coarse vertex), BadChunk (the border gets
-/// longer than it may). Cost: one coding of the mesh, about a microsecond a vertex.
-[[nodiscard]] Result<GrowthPlan> plan_growth(
-    const GridMesh& mesh,
-    std::span<const std::uint32_t> coarse,
-    const BatchState& state,
-    int surface_share
+/// Says whether growing makes a stream so much smaller than splits that nothing need show meanwhile.
+/// `grown`, `split`: bytes of the streams.
+[[nodiscard]] bool growth_pays(std::size_t grown, std::size_t split);
+
+/// A coded growth.
+struct CodedGrowth
+{
+    std::vector<std::vector<std::byte>> chunks;  ///< Without checksums.
+    std::vector<std::uint32_t> sources;          ///< By vertex of the stream that of the source.
+};
+
+/// Tells with which of kPredictions the growth of a mesh over the coarse mesh in `state` gets shortest, by
+/// its first vertices; nothing when the mesh cannot grow. `source`: the complete mesh, to be restarted
+/// afterwards. Cost: about half a microsecond a vertex.
+[[nodiscard]] std::optional<PredictionShares> choose_predictions(
+    GrowthSource& source, const BatchState& state
 );
 
-/// Plans with every weight of kSurfaceShares and returns the shortest; nothing when the mesh cannot
-/// grow. Arguments as for plan_growth().
-[[nodiscard]] std::optional<GrowthPlan> cheapest_growth(
-    const GridMesh& mesh, std::span<const std::uint32_t> coarse, const BatchState& state
+/// Codes the growth of a mesh over the coarse mesh in `state`, in chunks within proto::kTargetChunkBytes.
+/// `source`: the complete mesh, freshly started.
+/// Errors: Internal (not a manifold, a component without a coarse vertex), BadChunk (the border gets
+/// longer than it may). Cost: about a microsecond a vertex.
+[[nodiscard]] Result<CodedGrowth> code_growth(
+    GrowthSource& source, const BatchState& state, const PredictionShares& predicted
 );
 
 }  // namespace vsplit::codec

@@ -26,14 +26,8 @@ struct SourceEdge
 }  // namespace
 
 GrowthSource::GrowthSource(const GridMesh& mesh, std::span<const std::uint32_t> coarse)
-    : mesh_(mesh),
-      coarse_(coarse),
-      opposite_(mesh.triangles.size() * 4, -1),
-      grown_(mesh.triangles.size(), -1),
-      known_(mesh.positions.size(), 0)
+    : mesh_(mesh), coarse_(coarse), opposite_(mesh.triangles.size() * 4, -1)
 {
-    first_.reserve(mesh.triangles.size());
-    vertex_of_.reserve(mesh.positions.size());
     // Edges are grouped by their lower vertex (counting sort), then matched within the small groups.
     std::vector<std::uint32_t> start(mesh.positions.size() + 1, 0);
     const auto edge_at = [&](Corner corner) {
@@ -70,6 +64,18 @@ GrowthSource::GrowthSource(const GridMesh& mesh, std::span<const std::uint32_t> 
         }
         sorted[end[edge.low]++] = corner;
     });
+    restart();
+}
+
+void GrowthSource::restart()
+{
+    first_.clear();
+    first_.reserve(face_count());
+    vertex_of_.clear();
+    vertex_of_.reserve(vertex_count());
+    grown_.assign(face_count(), -1);
+    known_.assign(vertex_count(), 0);
+    next_seed_ = 0;
 }
 
 Corner GrowthSource::to_source(Corner grown) const

@@ -29,6 +29,21 @@ public:
     /// vertex its number in the coarse mesh, or kNone. Both must outlive this.
     GrowthSource(const GridMesh& mesh, std::span<const std::uint32_t> coarse);
 
+    /// Forgets what was grown, so that the mesh can be grown once more.
+    void restart();
+
+    /// Vertices of the complete mesh.
+    [[nodiscard]] std::uint32_t vertex_count() const
+    {
+        return static_cast<std::uint32_t>(mesh_.positions.size());
+    }
+
+    /// Faces of the complete mesh.
+    [[nodiscard]] std::uint32_t face_count() const
+    {
+        return static_cast<std::uint32_t>(mesh_.triangles.size());
+    }
+
     /// Takes the next component's first face for the seed just added. Error: Internal when there is
     /// none or it has no coarse vertex.
     [[nodiscard]] Result<void> take_seed();

@@ -243,7 +243,7 @@ private:
         }
         BitDecoder bits;
         VSPLIT_TRY(bits.start(bytes));
-        VSPLIT_TRY(growth_->run(bits, state_, {}, 0, nullptr));
+        VSPLIT_TRY(growth_->run(bits, state_, {}, {}, nullptr));
         VSPLIT_TRY(bits.finish());
         if (growth_->complete() != chunk.ends_level)
         {

@@ -54,19 +54,29 @@ public:
     Result<std::vector<std::byte>> run()
     {
         VSPLIT_TRY(add_base());
-        std::optional<StreamBuilder> grown;
-        for (std::size_t level = 1; level < plan_.levels.size(); ++level)
+        std::optional<StreamBuilder> early;
+        std::optional<StreamBuilder> late;
+        const auto pays = [this](const std::optional<StreamBuilder>& grown) {
+            return grown && growth_pays(grown->payload_.size(), payload_.size());
+        };
+        for (std::size_t level = 1; level < plan_.levels.size() && !pays(late); ++level)
         {
             VSPLIT_TRY(add_level(plan_.levels[level]));
-            if (!grown && plan_.training == nullptr && may_grow_from(level))
+            const GrowthStart start = start_of_growth(level);
+            if (start == GrowthStart::IfNeeded && !early)
             {
-                const auto plan = cheapest_growth(*plan_.mesh, place_, state_);
-                if (plan)
-                {
-                    grown.emplace(*this);
-                    VSPLIT_TRY(grown->add_growth(*plan));
-                }
+                VSPLIT_TRY(grow(early));
             }
+            if (start == GrowthStart::Now && !late)
+            {
+                VSPLIT_TRY(grow(late));
+            }
+        }
+        if (pays(late) || pays(early))
+        {
+            StreamBuilder& grown = pays(late) ? *late : *early;
+            grown.add_stitches();
+            return grown.assemble();
         }
         if (state_.mesh.vertex_count() != plan_.mesh->positions.size() ||
             state_.mesh.face_count() != plan_.mesh->triangles.size() || state_.shift != 0)
@@ -77,9 +87,8 @@ public:
         {
             *plan_.training = *state_.model;
         }
-        StreamBuilder& smaller = grown && grown->payload_.size() < payload_.size() ? *grown : *this;
-        smaller.add_stitches();
-        return smaller.assemble();
+        add_stitches();
+        return assemble();
     }
 
 private:
@@ -124,25 +133,7 @@ private:
     {
         const PlannedLevel& level = plan_.levels.front();
         on_grid_.enter(level, true);
-        GridMesh base;
-        std::vector<std::uint32_t> sources;
-        std::vector<std::uint32_t> place(plan_.mesh->positions.size(), kNoVertex);
-        for (const Triangle& triangle : plan_.base_triangles)
-        {
-            Triangle renumbered{};
-            for (std::size_t k = 0; k < 3; ++k)
-            {
-                std::uint32_t& index = place[triangle[k]];
-                if (index == kNoVertex)
-                {
-                    index = static_cast<std::uint32_t>(sources.size());
-                    sources.push_back(triangle[k]);
-                    base.positions.push_back(on_grid_[triangle[k]]);
-                }
-                renumbered[k] = index;
-            }
-            base.triangles.push_back(renumbered);
-        }
+        const auto [base, sources] = collect_base(plan_.base_triangles, on_grid_);
         std::array<std::int32_t, 3> extent = extent_;
         for (std::int32_t& index : extent)
         {
@@ -292,43 +283,46 @@ private:
         return static_cast<std::uint32_t>(plan_.mesh->triangles.size());
     }
 
-    bool may_grow_from(std::size_t level) const
+    GrowthStart start_of_growth(std::size_t level) const
     {
-        return plan_.grow_last_level && level + 1 < plan_.levels.size() &&
-               shows_enough(payload_.size(), plan_vertices(), plan_.levels[level].shift);
+        const bool may = plan_.grow_last_level && plan_.training == nullptr;
+        return may && level + 1 < plan_.levels.size()
+                   ? growth_start(payload_.size(), plan_vertices(), plan_.levels[level].shift)
+                   : GrowthStart::Never;
     }
 
-    /// Codes the complete mesh over the present level.
-    Result<void> add_growth(const GrowthPlan& plan)
+    /// Makes a copy of this stream that goes on with the growth of the complete mesh; nothing when the
+    /// mesh cannot grow.
+    Result<void> grow(std::optional<StreamBuilder>& grown) const
     {
-        const std::uint32_t coarse = state_.mesh.vertex_count();
         GrowthSource source(*plan_.mesh, place_);
-        Growth growth(plan_vertices(), plan_faces());
-        for (std::size_t i = 0; i < plan.chunks.size(); ++i)
+        const auto predicted = choose_predictions(source, state_);
+        if (!predicted)
         {
-            BitEncoder bits;
-            VSPLIT_TRY(growth.run(bits, state_, plan.chunks[i], plan.surface_share, &source));
-            ByteWriter chunk;
-            bits.finish(chunk);
-            grown_ = i + 1 == plan.chunks.size();
+            return {};
+        }
+        source.restart();
+        const auto coded = code_growth(source, state_, *predicted);
+        VSPLIT_TRY(coded);
+        grown.emplace(*this);
+        grown->add_growth(*coded);
+        return {};
+    }
+
+    /// Ends the stream with the complete mesh, grown over the present level.
+    void add_growth(const CodedGrowth& growth)
+    {
+        for (std::uint32_t v = state_.mesh.vertex_count(); v < growth.sources.size(); ++v)
+        {
+            place_vertex(growth.sources[v]);
+        }
+        for (std::size_t i = 0; i < growth.chunks.size(); ++i)
+        {
+            grown_ = i + 1 == growth.chunks.size();
             add_chunk(
-                proto::ChunkKind::Growth, chunk.view(), grown_ ? &plan_.levels.back() : nullptr
+                proto::ChunkKind::Growth, growth.chunks[i], grown_ ? &plan_.levels.back() : nullptr
             );
         }
-        if (!growth.complete())
-        {
-            return fail(ErrorCode::Internal, "the growth does not reach the complete mesh");
-        }
-        std::vector<std::uint32_t> grown(growth.numbers().size());
-        for (std::uint32_t t = 0; t < grown.size(); ++t)
-        {
-            grown[growth.numbers()[t]] = source.vertex(t);
-        }
-        for (std::uint32_t v = coarse; v < grown.size(); ++v)
-        {
-            place_vertex(grown[v]);
-        }
-        return {};
     }
 
     void add_stitches()

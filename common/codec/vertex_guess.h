@@ -54,6 +54,8 @@ struct Surroundings
     static constexpr std::size_t kMostGuesses = 4;
     std::array<Vector3, kMostGuesses> guess{};  ///< By parallelograms.
     std::size_t guesses = 0;
+    bool is_curved = false;        ///< Whether `curved` is known:
+    Vector3 curved{};              ///< exact on a lattice over a quadratic surface.
     Vector3 mean{};                ///< Of the known neighbours.
     std::uint32_t known = 0;       ///< Known neighbours.
     std::uint32_t tangential = 0;  ///< Mean sizes of their residuals.
@@ -61,8 +63,9 @@ struct Surroundings
     std::uint32_t some = 0;   ///< One of them
     Vector3 some_position{};  ///< and where it is.
 
-    /// The prediction from all parallelograms, or from the neighbours where there is none.
-    [[nodiscard]] Vector3 average() const
+    /// The prediction from all parallelograms, or from the neighbours where there is none. `curved_share`:
+    /// how far it bends, 0 .. 1.
+    [[nodiscard]] Vector3 average(float curved_share) const
     {
         if (guesses == 0)
         {
@@ -73,65 +76,132 @@ struct Surroundings
         {
             sum = sum + guess[i];
         }
-        return sum * (1.0F / static_cast<float>(guesses));
+        const Vector3 flat = sum * (1.0F / static_cast<float>(guesses));
+        return is_curved ? flat + (curved - flat) * curved_share : flat;
     }
 };
 
 /// Gathers what the neighbours of an unknown vertex say, from the faces around it.
-[[nodiscard]] inline Surroundings look_around(
-    const GrownMesh& mesh,
-    const VertexFront& front,
-    std::span<const RingFace> ring,
-    const GrownPositions& positions,
-    const std::vector<ResidualSizes>& sizes
-)
+class Gathering
 {
-    Surroundings seen;
-    const auto see = [&](std::uint32_t v, const Vector3& place) {
-        seen.mean = seen.mean + place;
-        seen.tangential += sizes[v].tangential;
-        seen.normal += sizes[v].normal;
-        seen.some = v;
-        seen.some_position = place;
-        ++seen.known;
-    };
-    for (const RingFace& face : ring)
+public:
+    /// All are read only and must outlive this. `sizes`: by grown vertex.
+    Gathering(
+        const GrownMesh& mesh,
+        const VertexFront& front,
+        const GrownPositions& positions,
+        const std::vector<ResidualSizes>& sizes
+    )
+        : mesh_(mesh), front_(front), positions_(positions), sizes_(sizes)
+    {
+    }
+
+    /// `ring`: the faces around the vertex, in turn; `bends`: whether curved predictions are wanted.
+    [[nodiscard]] Surroundings run(std::span<const RingFace> ring, bool bends)
+    {
+        const RingFace* before = nullptr;  // the face before, when it gave a parallelogram
+        bool first_gave = false;
+        for (const RingFace& face : ring)
+        {
+            const bool gave = look_at(face);
+            if (bends && gave && before != nullptr)
+            {
+                bend(*before, face, seen_.guesses - 2, seen_.guesses - 1);
+            }
+            before = gave ? &face : nullptr;
+            first_gave = first_gave || (gave && &face == ring.data());
+        }
+        if (bends && first_gave && before != nullptr && seen_.guesses > 1)
+        {
+            bend(*before, ring.front(), seen_.guesses - 1, 0);
+        }
+        if (seen_.known > 0)
+        {
+            seen_.mean = seen_.mean * (1.0F / static_cast<float>(seen_.known));
+            seen_.tangential /= seen_.known;
+            seen_.normal /= seen_.known;
+        }
+        return seen_;
+    }
+
+private:
+    [[nodiscard]] Vector3 position(std::uint32_t number) const
+    {
+        return to_vector(positions_[number]);
+    }
+
+    void see(std::uint32_t v, const Vector3& place)
+    {
+        seen_.mean = seen_.mean + place;
+        seen_.tangential += sizes_[v].tangential;
+        seen_.normal += sizes_[v].normal;
+        seen_.some = v;
+        seen_.some_position = place;
+        ++seen_.known;
+    }
+
+    /// Result: whether the face gave a parallelogram.
+    bool look_at(const RingFace& face)
     {
         Vector3 next{};
         const bool next_known = face.next_number != kUnknownVertex;
         if (next_known)
         {
-            next = to_vector(positions[face.next_number]);
+            next = position(face.next_number);
             see(face.next, next);
         }
         if (face.previous_number == kUnknownVertex || !(next_known || face.ends))
         {
-            continue;
+            return false;
         }
-        const Vector3 previous = to_vector(positions[face.previous_number]);
+        const Vector3 previous = position(face.previous_number);
         if (face.ends)
         {
             see(face.previous, previous);
         }
-        const Corner beyond = mesh.opposite(face.corner);
-        if (!next_known || beyond < 0 || seen.guesses == Surroundings::kMostGuesses)
+        const Corner beyond = mesh_.opposite(face.corner);
+        if (!next_known || beyond < 0 || seen_.guesses == Surroundings::kMostGuesses)
         {
-            continue;
+            return false;
         }
-        const std::uint32_t across = front.number(mesh.vertex(beyond));
-        if (across != kUnknownVertex)
+        const std::uint32_t across = front_.number(mesh_.vertex(beyond));
+        if (across == kUnknownVertex)
         {
-            seen.guess[seen.guesses++] = next + previous - to_vector(positions[across]);
+            return false;
         }
+        seen_.guess[seen_.guesses++] = next + previous - position(across);
+        return true;
     }
-    if (seen.known > 0)
+
+    /// Bends the prediction of two parallelograms, the i-th p + m - c and the j-th m + q - d, if their faces
+    /// share the edge to m and none is bent yet. When six faces lie around m, the vertex e across it from the unknown one makes it
+    /// exact for quadratic surfaces over a lattice: e + (p - d) + (q - c).
+    void bend(const RingFace& first, const RingFace& second, std::size_t i, std::size_t j)
     {
-        seen.mean = seen.mean * (1.0F / static_cast<float>(seen.known));
-        seen.tangential /= seen.known;
-        seen.normal /= seen.known;
+        constexpr std::uint8_t kLattice = 6;
+        const std::uint32_t middle = first.previous;
+        if (seen_.is_curved || second.next != middle || mesh_.incident(middle) != kLattice)
+        {
+            return;
+        }
+        const Corner beyond = mesh_.opposite(previous_corner(mesh_.opposite(first.corner)));
+        const std::uint32_t across =
+            beyond < 0 ? kUnknownVertex : front_.number(mesh_.vertex(beyond));
+        if (across == kUnknownVertex)
+        {
+            return;
+        }
+        const Vector3 at_middle = position(first.previous_number);
+        seen_.is_curved = true;
+        seen_.curved = seen_.guess[i] + seen_.guess[j] + position(across) - at_middle - at_middle;
     }
-    return seen;
-}
+
+    const GrownMesh& mesh_;
+    const VertexFront& front_;
+    const GrownPositions& positions_;
+    const std::vector<ResidualSizes>& sizes_;
+    Surroundings seen_;
+};
 
 /// Encoder: 0 for the average, i for the i-th parallelogram, by what residuals would cost about.
 [[nodiscard]] inline std::size_t best_guess(

@@ -20,19 +20,27 @@
 
 namespace vsplit::codec {
 
+/// What positions are predicted from, eighths.
+struct PredictionShares
+{
+    int surface = 0;  ///< How far the coarse surface counts against the parallelograms, 0 .. 7.
+    int curved = 0;   ///< How far these bend, 0 .. 8.
+};
+
 /// Codes which vertices of the grown mesh are coarse ones, and the positions of the others, as many at
 /// a time as a chunk holds. One object serves the whole stage.
 class VertexPlacer
 {
 public:
     /// Prepares for a grown mesh whose faces are all there. `max_index`: largest coordinate; `shift`:
-    /// bits of precision that the coarse mesh lacks; `surface_share`: eighths, how far the coarse
-    /// surface counts.
-    void start(const GrownMesh& mesh, std::int32_t max_index, int shift, int surface_share)
+    /// bits of precision that the coarse mesh lacks; `shares`: what predictions are made of.
+    void start(
+        const GrownMesh& mesh, std::int32_t max_index, int shift, const PredictionShares& shares
+    )
     {
         max_index_ = max_index;
         shift_ = shift;
-        surface_share_ = static_cast<float>(surface_share) * 0.125F;
+        shares_ = shares;
         front_.start(mesh);
         hint_.assign(mesh.vertex_count(), 0);
         sizes_.assign(mesh.vertex_count(), {});
@@ -108,7 +116,8 @@ private:
             wanted = {source->coarse(vertex), source->position(vertex)};
         }
         const auto& ring = front_.look_around(mesh, corner);
-        const Surroundings seen = look_around(mesh, front_, ring, positions, sizes_);
+        const Surroundings seen =
+            Gathering(mesh, front_, positions, sizes_).run(ring, shares_.curved > 0);
         if (seen.known == 0)
         {
             // The first vertex of a component is a coarse one.
@@ -117,7 +126,7 @@ private:
             const Vector3 expected = surface.point(*number);
             return meet(coder, surface, positions, model, vertex, *number, expected, wanted);
         }
-        const Vector3 expected = seen.average();
+        const Vector3 expected = seen.average(static_cast<float>(shares_.curved) * 0.125F);
         const auto& ground = surface.walk(hint_[seen.some], expected);
         hint_[vertex] = ground.face;
         const auto near = surface.candidates(ground, expected);
@@ -151,7 +160,7 @@ private:
             coder,
             model,
             ground,
-            surface_share_,
+            static_cast<float>(shares_.surface) * 0.125F,
             seen,
             kind,
             expected,
@@ -269,7 +278,7 @@ private:
     std::vector<ResidualSizes> sizes_;  ///< By grown vertex.
     std::int32_t max_index_ = 0;
     int shift_ = 0;
-    float surface_share_ = 0.0F;
+    PredictionShares shares_;
 };
 
 }  // namespace vsplit::codec

@@ -238,6 +238,8 @@ double CollapseCost::quadric_price(
         }
         // area / 3 * distance^2, with the area normal twice the area long.
         price += present / 6.0;
+        // Times the root of the mean distance, so that what is far off counts more than its area.
+        price *= star.area > 0.0 ? std::sqrt(std::sqrt(price / star.area)) : 1.0;
     }
     const double square = dot(star.offset[kept], star.offset[kept]);
     price += kLengthTerm * square * square + 1e-4 * star.area * square * 1e-3;

@@ -65,22 +65,6 @@ std::vector<std::uint32_t> removed_vertices(const LevelBatches& batches)
     return removed;
 }
 
-/// Leaves only the triangles that have a free vertex.
-void drop_fixed_triangles(PlacedLevel& level, std::vector<std::uint8_t>& is_free)
-{
-    for (const std::uint32_t v : level.free)
-    {
-        is_free[v] = 1;
-    }
-    std::erase_if(level.triangles, [&](const Triangle& triangle) {
-        return std::ranges::none_of(triangle, [&](std::uint32_t v) { return is_free[v] != 0; });
-    });
-    for (const std::uint32_t v : level.free)
-    {
-        is_free[v] = 0;
-    }
-}
-
 /// The cells that the vertices of a level are shown in, and of the coarser ones with the same shift.
 std::vector<std::array<std::int32_t, 3>> shown_cells(
     const GridMesh& mesh, std::span<const LevelView> views, std::size_t level
@@ -114,7 +98,6 @@ LevelMeter::LevelMeter(
       threads_(threads),
       tracker_(source.exact, *source.mesh, importance, threads),
       shifts_(1, 0),
-      is_free_(source.exact.size(), 0),
       vertices_(source.exact.size())
 {
     source_.tree = &tracker_.tree();
@@ -123,36 +106,42 @@ LevelMeter::LevelMeter(
 void LevelMeter::add(const LevelBatches& level)
 {
     const int shift = shifts_.back();
-    PlacedLevel finer;
-    finer.level = shifts_.size() - 1;
-    finer.shift = shift;
-    const bool worth = is_worth_placing(vertices_, source_.exact.size(), shift);
-    if (worth)
-    {
-        finer.triangles = tracker_.triangles();
-    }
+    place();
     collapse(tracker_, level);
-    std::vector<std::uint32_t> removed = removed_vertices(level);
+    const std::vector<std::uint32_t> removed = removed_vertices(level);
     vertices_ -= removed.size();
-    shifts_.push_back(std::max(shift, shift_for(telling_error(tracker_.follow()), source_.bits)));
-    if (worth)
+    if (!placed_.empty())
     {
-        if (shifts_.back() == shift)
-        {
-            finer.free = std::move(removed);
-            drop_fixed_triangles(finer, is_free_);
-        }
-        placed_.push_back(std::move(finer));
+        auto& born = placed_.back().born;
+        born.insert(born.end(), removed.begin(), removed.end());
     }
+    shifts_.push_back(std::max(shift, shift_for(telling_error(tracker_.follow()), source_.bits)));
+}
+
+void LevelMeter::place()
+{
+    const int shift = shifts_.back();
+    if (!is_worth_placing(vertices_, source_.exact.size(), shift))
+    {
+        return;
+    }
+    if (placed_.empty() || placed_.back().shift != shift)
+    {
+        placed_.emplace_back();
+        placed_.back().shift = shift;
+        placed_.back().finest = tracker_.triangles();
+    }
+    else
+    {
+        placed_.back().coarsest = tracker_.triangles();
+    }
+    placed_.back().coarsest_level = shifts_.size() - 1;
 }
 
 std::vector<LevelView> LevelMeter::choose()
 {
     const std::size_t last = shifts_.size() - 1;
-    if (is_worth_placing(vertices_, source_.exact.size(), shifts_.back()))
-    {
-        placed_.push_back({last, shifts_.back(), tracker_.triangles(), {}});
-    }
+    place();
     std::ranges::reverse(placed_);
     std::vector<LevelView> views(shifts_.size());
     for (std::size_t i = 0; i < views.size(); ++i)
@@ -162,7 +151,7 @@ std::vector<LevelView> LevelMeter::choose()
     auto displaced = place_levels(source_, placed_, threads_);
     for (std::size_t i = 0; i < displaced.size(); ++i)
     {
-        views[last - placed_[i].level].displaced = std::move(displaced[i]);
+        views[last - placed_[i].coarsest_level].displaced = std::move(displaced[i]);
     }
     placed_ = {};
     return views;

@@ -56,10 +56,12 @@ private:
     PlacementSource source_;
     unsigned threads_;
     ErrorTracker tracker_;
-    std::vector<PlacedLevel> placed_;    ///< Finest first; their `level` counts from the finest.
-    std::vector<int> shifts_;            ///< Finest first.
-    std::vector<std::uint8_t> is_free_;  ///< By vertex; all 0 between calls.
-    std::size_t vertices_ = 0;           ///< Of the coarsest level so far.
+    /// Notes that the coarsest level so far is to be placed, with those finer ones that have its shift.
+    void place();
+
+    std::vector<PlacedLevels> placed_;  ///< Finest first; they count levels from the finest.
+    std::vector<int> shifts_;           ///< Finest first.
+    std::size_t vertices_ = 0;          ///< Of the coarsest level so far.
 };
 
 }  // namespace vsplit::precompute

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <optional>
 
 namespace vsplit::precompute {
 namespace {
@@ -114,14 +115,15 @@ std::int32_t halves_outside(const Cell& coarse, const Cell& fine, int steps)
     return sum;
 }
 
-/// One level while its vertices are placed.
+/// Levels of one shift while their vertices are placed. A vertex stays where it is until the grid gets finer,
+/// so that it has to suit the coarsest of them and the finest.
 class Placement
 {
 public:
     /// `cells`: by vertex of the source where it is shown before, on a grid that is coarser by `steps`.
     Placement(
         const PlacementSource& source,
-        const PlacedLevel& level,
+        const PlacedLevels& levels,
         const FitSource& fit_source,
         std::span<const Cell> cells,
         int steps,
@@ -130,41 +132,52 @@ public:
         : source_(source),
           cells_(cells),
           steps_(steps),
-          grid_(level.shift, source.bits),
+          grid_(levels.shift, source.bits),
           local_(source.exact.size(), kNone),
-          fit_(make_fit(level, fit_source, threads))
+          is_new_(source.exact.size(), 0)
     {
+        if (!levels.coarsest.empty())
+        {
+            coarsest_.emplace(make_fit(levels.coarsest, fit_source, threads));
+        }
+        in_coarsest_ = vertices_.size();
+        finest_.emplace(make_fit(levels.finest, fit_source, threads));
+        for (const std::uint32_t v : levels.born)
+        {
+            is_new_[v] = 1;
+        }
     }
 
-    /// Chooses cells for the free vertices.
+    /// Chooses cells for the vertices.
     std::vector<codec::Displacement> run()
     {
-        std::vector<Cell> chosen(free_.size());
+        const auto count = static_cast<std::uint32_t>(vertices_.size());
+        std::vector<Cell> chosen(count);
         for (int pass = 0; pass < kPasses; ++pass)
         {
-            for (std::size_t i = 0; i < free_.size(); ++i)
+            for (std::uint32_t v = 0; v < count; ++v)
             {
-                chosen[i] = choose(free_[i]);
-                fit_.move(free_[i], grid_.shown(chosen[i]) - fit_.place(free_[i]));
+                chosen[v] = choose(v);
+                move(v, grid_.shown(chosen[v]) - finest_->place(v));
             }
         }
         std::vector<codec::Displacement> displaced;
-        for (std::size_t i = 0; i < free_.size(); ++i)
+        for (std::uint32_t v = 0; v < count; ++v)
         {
-            if (chosen[i] != home(free_[i]))
+            if (chosen[v] != home(v))
             {
-                displaced.push_back({vertices_[free_[i]], chosen[i]});
+                displaced.push_back({vertices_[v], chosen[v]});
             }
         }
         return displaced;
     }
 
 private:
-    SurfaceFit make_fit(const PlacedLevel& level, const FitSource& fit_source, unsigned threads)
+    /// Vertices that have no number yet get the next ones.
+    SurfaceFit make_fit(
+        std::vector<Triangle> triangles, const FitSource& fit_source, unsigned threads
+    )
     {
-        const bool all = level.free.empty();
-        std::vector<Triangle> triangles = level.triangles;
-        std::vector<Vector3> places;
         for (Triangle& triangle : triangles)
         {
             for (std::uint32_t& v : triangle)
@@ -173,21 +186,35 @@ private:
                 {
                     local_[v] = static_cast<std::uint32_t>(vertices_.size());
                     vertices_.push_back(v);
-                    places.push_back(all ? source_.exact[v] : grid_.shown(cells_[v]));
-                    if (all)
-                    {
-                        free_.push_back(local_[v]);
-                    }
                 }
                 v = local_[v];
             }
         }
-        for (const std::uint32_t v : level.free)
+        std::vector<Vector3> places(vertices_.size());
+        std::ranges::transform(vertices_, places.begin(), [this](std::uint32_t v) {
+            return source_.exact[v];
+        });
+        return {fit_source, std::move(places), triangles, threads};
+    }
+
+    void move(std::uint32_t v, const Vector3& step)
+    {
+        finest_->move(v, step);
+        if (v < in_coarsest_)
         {
-            free_.push_back(local_[v]);
-            places[local_[v]] = source_.exact[v];
+            coarsest_->move(v, step);
         }
-        return {fit_source, std::move(places), triangles, all, threads};
+    }
+
+    /// The squared distances of both levels as a function of a step of a vertex, half of each.
+    [[nodiscard]] QuadraticForm form(std::uint32_t v) const
+    {
+        QuadraticForm form = finest_->form(v);
+        if (v < in_coarsest_)
+        {
+            form.average(coarsest_->form(v));
+        }
+        return form;
     }
 
     [[nodiscard]] Cell home(std::uint32_t v) const
@@ -202,18 +229,17 @@ private:
         {
             return own;
         }
-        QuadraticForm form = fit_.form(v);
+        QuadraticForm form = this->form(v);
+        const Vector3& place = finest_->place(v);
         const double price = kCellPrice * grid_.size() * grid_.size() * form.weight;
-        form.attract(
-            source_.exact[vertices_[v]] - fit_.place(v), kHomePull * (form.weight + kLeastWeight)
-        );
-        const Cell below = grid_.below(fit_.place(v) + form.minimum(), own);
+        form.attract(source_.exact[vertices_[v]] - place, kHomePull * (form.weight + kLeastWeight));
+        const Cell below = grid_.below(place + form.minimum(), own);
         double least = std::numeric_limits<double>::infinity();
         Cell best = own;
         for (std::int32_t corner = 0; corner < 8; ++corner)
         {
             const Cell cell = grid_.neighbour(below, corner);
-            const double value = form.evaluate(grid_.shown(cell) - fit_.place(v)) +
+            const double value = form.evaluate(grid_.shown(cell) - place) +
                                  price * static_cast<double>(way_home(v, cell, own));
             if (value < least)
             {
@@ -227,8 +253,9 @@ private:
     /// What a cell costs: coming to it from the grid before, and going home from it.
     [[nodiscard]] std::int32_t way_home(std::uint32_t v, const Cell& cell, const Cell& own) const
     {
-        const std::int32_t coming =
-            steps_ > 0 ? halves_outside(cells_[vertices_[v]], cell, steps_) : 0;
+        const std::uint32_t vertex = vertices_[v];
+        const bool comes = steps_ > 0 && is_new_[vertex] == 0;
+        const std::int32_t coming = comes ? halves_outside(cells_[vertex], cell, steps_) : 0;
         return 2 * coming + cells_apart(cell, own);
     }
 
@@ -236,13 +263,15 @@ private:
     std::span<const Cell> cells_;
     int steps_;
     LevelGrid grid_;
-    std::vector<std::uint32_t> local_;     ///< By vertex of the source its number in the level.
-    std::vector<std::uint32_t> vertices_;  ///< By vertex of the level its number in the source.
-    std::vector<std::uint32_t> free_;      ///< In vertices of the level.
-    SurfaceFit fit_;
+    std::vector<std::uint32_t> local_;     ///< By vertex of the source its number here.
+    std::vector<std::uint32_t> vertices_;  ///< By number the vertex of the source.
+    std::vector<std::uint8_t> is_new_;     ///< By vertex of the source: no coarser level has it.
+    std::optional<SurfaceFit> coarsest_;   ///< Unless it is the finest.
+    std::size_t in_coarsest_ = 0;          ///< Vertices that it has, the first ones.
+    std::optional<SurfaceFit> finest_;
 };
 
-FitSource make_fit_source(const PlacementSource& source, std::span<const PlacedLevel> levels)
+FitSource make_fit_source(const PlacementSource& source, std::span<const PlacedLevels> levels)
 {
     FitSource fit;
     fit.positions.resize(source.exact.size());
@@ -253,9 +282,9 @@ FitSource make_fit_source(const PlacementSource& source, std::span<const PlacedL
     fit.triangles = source.mesh->triangles;
     fit.tree = source.tree;
     std::size_t most = 0;
-    for (const PlacedLevel& level : levels)
+    for (const PlacedLevels& level : levels)
     {
-        most = std::max(most, level.free.empty() ? level.triangles.size() : 0);
+        most = std::max(most, level.finest.size());
     }
     // A closed surface has half as many vertices as faces.
     fit.samples = sample_surface(fit.positions, fit.triangles, SurfaceFit::sample_count(most / 2));
@@ -281,14 +310,14 @@ bool is_worth_placing(std::size_t vertices, std::size_t all, int shift)
 }
 
 std::vector<std::vector<codec::Displacement>> place_levels(
-    const PlacementSource& source, std::span<const PlacedLevel> levels, unsigned threads
+    const PlacementSource& source, std::span<const PlacedLevels> levels, unsigned threads
 )
 {
     const FitSource fit_source = make_fit_source(source, levels);
     std::vector<std::vector<codec::Displacement>> placed;
     std::vector<Cell> cells;
     int shift = 0;
-    for (const PlacedLevel& level : levels)
+    for (const PlacedLevels& level : levels)
     {
         const int steps = cells.empty() ? 0 : shift - level.shift;
         shift = level.shift;

@@ -22,15 +22,14 @@ struct PlacementSource
     int bits = 12;                           ///< Position bits.
 };
 
-/// A level to place.
-struct PlacedLevel
+/// Levels of one shift, to be placed together.
+struct PlacedLevels
 {
-    std::size_t level = 0;
+    std::size_t coarsest_level = 0;
     int shift = 0;
-    std::vector<Triangle> triangles;  ///< In vertices of the source.
-    /// Vertices that may be moved: those that the level adds; empty for all, where the level has another
-    /// shift than the one before.
-    std::vector<std::uint32_t> free;
+    std::vector<Triangle> finest;     ///< Of the finest level, in vertices of the source.
+    std::vector<Triangle> coarsest;   ///< Of the coarsest; empty when it is the finest.
+    std::vector<std::uint32_t> born;  ///< Vertices that no level before has, among others maybe.
 };
 
 /// Says whether a level of `vertices` out of `all` is worth placing at `shift`: what the vertices
@@ -41,9 +40,9 @@ struct PlacedLevel
 /// best, at a price for leaving the cell that a vertex comes from or belongs to.
 /// `levels`: coarsest first, shifts falling; `threads`: at least 1, the result does not depend on it.
 /// Result: for each of them the vertices that from there on are not shown in their own cells.
-/// Cost: about ten microseconds for every free vertex.
+/// Cost: about ten microseconds for every vertex of a finest level.
 [[nodiscard]] std::vector<std::vector<codec::Displacement>> place_levels(
-    const PlacementSource& source, std::span<const PlacedLevel> levels, unsigned threads
+    const PlacementSource& source, std::span<const PlacedLevels> levels, unsigned threads
 );
 
 }  // namespace vsplit::precompute

@@ -16,14 +16,13 @@ namespace {
 using Point = std::array<float, 3>;
 
 /// Samples of the source for every coarse vertex.
-constexpr std::size_t kSamplesPerVertex = 4;
+constexpr std::size_t kSamplesPerVertex = 3;
 
 /// Samples of the source at least.
 constexpr std::size_t kFewestSamples = 1000;
 
 /// Points of a coarse face.
-constexpr std::array<Point, 4> kFacePoints{{
-    {1.0F / 3.0F, 1.0F / 3.0F, 1.0F / 3.0F},
+constexpr std::array<Point, 3> kFacePoints{{
     {2.0F / 3.0F, 1.0F / 6.0F, 1.0F / 6.0F},
     {1.0F / 6.0F, 2.0F / 3.0F, 1.0F / 6.0F},
     {1.0F / 6.0F, 1.0F / 6.0F, 2.0F / 3.0F},
@@ -112,6 +111,16 @@ void chain_searches(std::size_t count, unsigned threads, const Search& search)
 
 }  // namespace
 
+void QuadraticForm::average(const QuadraticForm& other)
+{
+    for (std::size_t i = 0; i < matrix.size(); ++i)
+    {
+        matrix[i] = 0.5 * (matrix[i] + other.matrix[i]);
+    }
+    linear = (linear + other.linear) * 0.5;
+    weight = 0.5 * (weight + other.weight);
+}
+
 void QuadraticForm::attract(const Vector3& to, double amount)
 {
     matrix[0] += amount;
@@ -153,15 +162,11 @@ SurfaceFit::SurfaceFit(
     const FitSource& source,
     std::vector<Vector3> places,
     std::span<const Triangle> triangles,
-    bool both,
     unsigned threads
 )
     : places_(std::move(places)), triangles_(triangles.begin(), triangles.end())
 {
-    if (both)
-    {
-        tie_source(source, threads);
-    }
+    tie_source(source, threads);
     tie_coarse(source, threads);
     list_uses();
 }

@@ -29,6 +29,9 @@ struct QuadraticForm
     Vector3 linear{};
     double weight = 0.0;  ///< Samples that depend on the vertex, counted by how much.
 
+    /// Takes the mean of this and another form.
+    void average(const QuadraticForm& other);
+
     /// Adds `amount` times the squared distance from `to` along every direction.
     void attract(const Vector3& to, double amount);
 
@@ -52,7 +55,6 @@ public:
         const FitSource& source,
         std::vector<Vector3> places,
         std::span<const Triangle> triangles,
-        bool both,
         unsigned threads
     );
 

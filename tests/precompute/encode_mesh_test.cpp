@@ -272,6 +272,23 @@ IndexedMesh random_mesh(unsigned seed)
     return mesh;
 }
 
+TEST(EncodeMesh, GrowsInSeveralChunks)
+{
+    const EncodedSample sample = encode(
+        sphere(200, 300, 0.0, 1), {.position_bits = 20, .metric = Metric::Qem, .threads = 2}
+    );
+    const auto grows = [](const codec::ChunkInfo& chunk) {
+        return chunk.kind == proto::ChunkKind::Growth;
+    };
+    EXPECT_GT(std::ranges::count_if(sample.info.chunks, grows), 1);
+    EXPECT_TRUE(grows(sample.info.chunks.back()));
+    for (const codec::ChunkInfo& chunk : sample.info.chunks)
+    {
+        EXPECT_LE(chunk.bytes, proto::kTargetChunkBytes);
+    }
+    expect_exact(sample);
+}
+
 TEST(EncodeMesh, IsExactForRandomMeshes)
 {
     for (unsigned seed = 0; seed < 250; ++seed)

@@ -7,13 +7,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <vector>
 
 namespace vsplit::test {
 namespace {
 
 using precompute::FitSource;
-using precompute::PlacedLevel;
+using precompute::PlacedLevels;
 using precompute::PlacementSource;
 using precompute::QuadraticForm;
 using precompute::SurfaceFit;
@@ -96,7 +97,7 @@ TEST(SurfaceFit, LiftsTheVerticesOfACoarseBall)
 {
     const FineBall fine;
     const IndexedMesh coarse = ball(8, 12);
-    SurfaceFit fit(fine.fit_source(), coarse.positions, coarse.triangles, true, 1);
+    SurfaceFit fit(fine.fit_source(), coarse.positions, coarse.triangles, 1);
     double lift = 0.0;
     for (std::uint32_t v = 0; v < coarse.positions.size(); ++v)
     {
@@ -115,7 +116,7 @@ TEST(SurfaceFit, MovesChangeTheFormAsTheFormSaid)
 {
     const FineBall fine;
     const IndexedMesh coarse = ball(6, 9);
-    SurfaceFit fit(fine.fit_source(), coarse.positions, coarse.triangles, true, 1);
+    SurfaceFit fit(fine.fit_source(), coarse.positions, coarse.triangles, 1);
     const QuadraticForm before = fit.form(4);
     const Vector3 step{3.0, -2.0, 5.0};
     fit.move(4, step);
@@ -130,8 +131,8 @@ TEST(SurfaceFit, IsTheSameForAnyNumberOfThreads)
 {
     const FineBall fine;
     const IndexedMesh coarse = ball(20, 40);
-    const SurfaceFit one(fine.fit_source(), coarse.positions, coarse.triangles, true, 1);
-    const SurfaceFit three(fine.fit_source(), coarse.positions, coarse.triangles, true, 3);
+    const SurfaceFit one(fine.fit_source(), coarse.positions, coarse.triangles, 1);
+    const SurfaceFit three(fine.fit_source(), coarse.positions, coarse.triangles, 3);
     for (std::uint32_t v = 0; v < coarse.positions.size(); ++v)
     {
         EXPECT_EQ(one.form(v).matrix, three.form(v).matrix);
@@ -159,13 +160,13 @@ struct Coarsened
     }
 
     /// The coarse ball's faces between the nearest vertices of the fine one.
-    [[nodiscard]] PlacedLevel level(std::uint32_t rows, std::uint32_t columns, int shift) const
+    [[nodiscard]] PlacedLevels level(std::uint32_t rows, std::uint32_t columns, int shift) const
     {
         const IndexedMesh coarse = ball(rows, columns);
-        PlacedLevel level;
+        PlacedLevels level;
         level.shift = shift;
-        level.triangles = coarse.triangles;
-        for (Triangle& triangle : level.triangles)
+        level.finest = coarse.triangles;
+        for (Triangle& triangle : level.finest)
         {
             for (std::uint32_t& v : triangle)
             {
@@ -216,23 +217,65 @@ TEST(LevelPlacement, LeavesLockedVerticesAlone)
     EXPECT_TRUE(placed.front().empty());
 }
 
-TEST(LevelPlacement, MovesOnlyFreeVertices)
+TEST(LevelPlacement, SuitsTheCoarsestLevelAndTheFinest)
 {
     const Coarsened ball;
-    PlacedLevel finer = ball.level(8, 12, 4);
-    for (std::uint32_t i = 0; i < finer.triangles.size(); i += 3)
+    const PlacedLevels coarse = ball.level(6, 8, 2);
+    PlacedLevels both = ball.level(24, 32, 2);
+    const auto lift = [&](const PlacedLevels& levels) {
+        const auto placed = place_levels(ball.source(), std::vector{levels}, 1);
+        const QuantizationGrid unit{.origin = {}, .cell = 1.0, .bits = Coarsened::kBits};
+        double sum = 0.0;
+        for (const auto& [vertex, cell] : placed.front())
+        {
+            const bool is_coarse = std::ranges::any_of(coarse.finest, [v = vertex](const auto& t) {
+                return std::ranges::find(t, v) != t.end();
+            });
+            sum += is_coarse ? height(dequantize(unit, cell, 2)) : 0.0;
+        }
+        return sum;
+    };
+    const double of_finest = lift(both);
+    both.coarsest = coarse.finest;
+    const double of_both = lift(both);
+    // The larger its faces the further out a ball's vertices are best.
+    EXPECT_GT(of_both, of_finest);
+    EXPECT_LT(of_both, lift(coarse));
+}
+
+using Cell = std::array<std::int32_t, 3>;
+
+TEST(LevelPlacement, DoesNotHoldNewVerticesBack)
+{
+    const Coarsened ball;
+    std::vector levels{ball.level(12, 16, 5), ball.level(12, 16, 4)};
+    const auto known = place_levels(ball.source(), levels, 1);
+    for (const Triangle& triangle : levels.back().finest)
     {
-        finer.free.push_back(finer.triangles[i][0]);
+        levels.back().born.insert(levels.back().born.end(), triangle.begin(), triangle.end());
     }
-    std::ranges::sort(finer.free);
-    finer.free.erase(std::unique(finer.free.begin(), finer.free.end()), finer.free.end());
-    const auto placed = place_levels(ball.source(), std::vector{ball.level(6, 8, 4), finer}, 1);
-    ASSERT_EQ(placed.size(), 2U);
-    EXPECT_FALSE(placed.back().empty());
-    for (const codec::Displacement& displacement : placed.back())
-    {
-        EXPECT_TRUE(std::ranges::binary_search(finer.free, displacement.vertex));
-    }
+    const auto born = place_levels(ball.source(), levels, 1);
+    // How far vertices are from where the coarser grid showed them.
+    const auto distance = [&](const auto& placed) {
+        std::map<std::uint32_t, Cell> before;
+        for (const auto& [vertex, cell] : placed.front())
+        {
+            before[vertex] = cell;
+        }
+        std::int64_t sum = 0;
+        for (const auto& [vertex, cell] : placed.back())
+        {
+            for (std::size_t axis = 0; axis < 3; ++axis)
+            {
+                const std::int32_t shown = before.contains(vertex)
+                                               ? before[vertex][axis]
+                                               : ball.grid.positions[vertex][axis] >> 5;
+                sum += std::abs(2 * cell[axis] - 4 * shown - 1);
+            }
+        }
+        return sum;
+    };
+    EXPECT_GT(distance(born), distance(known));
 }
 
 TEST(LevelPlacement, IsTheSameForAnyNumberOfThreads)

@@ -38,7 +38,9 @@ class Sight:
         mesh = growth.grown.mesh
         self.seen = []
         self.guesses = []
+        corners = []                                        # for every face its corner if it gave a guess
         for c in mesh.around(corner):
+            corners.append(None)
             a, b = mesh.edge(c)
             pa, pb = growth.position(a), growth.position(b)
             if pa:
@@ -50,8 +52,10 @@ class Sight:
                 beyond = growth.position(mesh.vertex[across])
                 if beyond:
                     self.guesses.append(subtract(add(pa, pb), beyond))
+                    corners[-1] = c
         if self.seen:
             self._expect([growth.position(v) for v in self.seen])
+            self._bend(growth, corners)
             self.t, self.n = (
                 sum(growth.sizes[growth.number[v]][i] for v in self.seen) // len(self.seen)
                 for i in range(2)
@@ -63,6 +67,31 @@ class Sight:
         for position in of:
             total = add(total, position)
         self.expected = scale(total, divide(1.0, float(len(of))))
+
+    def _bend(self, growth, corners):
+        if growth.curved_share == 0 or len(self.guesses) < 2:
+            return
+        guess = iter(self.guesses)
+        gave = [(c, next(guess)) if c is not None else None for c in corners]
+        for first, second in zip(gave, gave[1:] + gave[:1]):
+            curved = first and second and self._curved(growth, *first, *second)
+            if curved:
+                share = single(growth.curved_share * 0.125)
+                self.expected = add(self.expected, scale(subtract(curved, self.expected), share))
+                return
+
+    @staticmethod
+    def _curved(growth, c, g, d, h):
+        mesh = growth.grown.mesh
+        m = mesh.vertex[prev_corner(c)]
+        if mesh.vertex[next_corner(d)] != m or growth.grown.grown_faces[m] != 6:
+            return None
+        o = mesh.opposite[prev_corner(mesh.opposite[c])]
+        across = growth.position(mesh.vertex[o]) if o >= 0 else None
+        if not across:
+            return None
+        middle = growth.position(m)
+        return subtract(subtract(add(add(g, h), across), middle), middle)
 
 
 class Growth:
@@ -85,13 +114,15 @@ class Growth:
         self.number = {}                                             # by grown vertex
         self.known = {}                                              # by grown vertex
         self.likely, self.possible = [], []
-        self.surface_share = 0
+        self.surface_share = self.curved_share = 0
         self.streams = None
 
     def decode(self, streams, row):
         self.streams = streams
         if row.starts_level:
             self.surface_share = streams.raw(3, "surface share")
+            self.curved_share = streams.raw(4, "curved share")
+            require(self.curved_share <= 8)
         more, n = self._count("faces"), self._count("vertices")
         mesh = self.grown.mesh
         target = mesh.faces() + more
