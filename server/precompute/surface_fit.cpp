@@ -202,7 +202,7 @@ void SurfaceFit::tie_source(const FitSource& source, unsigned threads)
         const Point shares = closest_shares(point, corners[0], corners[1], corners[2]);
         const Point off = subtract(point, mix(corners, shares));
         const Point direction = meeting_direction(off, corners);
-        ties_[i] = {face, shares, direction, 1.0F, dot(off, direction)};
+        ties_[i] = {hint, shares, direction, 1.0F, dot(off, direction)};
     });
 }
 
@@ -233,7 +233,9 @@ void SurfaceFit::tie_coarse(const FitSource& source, unsigned threads)
         const Point off =
             subtract(mix(there, closest_shares(point, there[0], there[1], there[2])), point);
         const Point direction = meeting_direction(off, there);
-        ties_[first + i] = {face, shares, direction, area(corners) * per_area, dot(off, direction)};
+        const auto index = static_cast<std::uint32_t>(i / kFacePoints.size());
+        ties_[first + i] = {
+            index, shares, direction, area(corners) * per_area, dot(off, direction)};
     });
 }
 
@@ -247,7 +249,7 @@ void SurfaceFit::list_uses()
             {
                 if (ties_[tie].share[k] > 0.0F)
                 {
-                    visit(ties_[tie].corner[k], Use{tie, k});
+                    visit(triangles_[ties_[tie].face][k], 4 * tie + k);
                 }
             }
         }
@@ -267,8 +269,8 @@ QuadraticForm SurfaceFit::form(std::uint32_t vertex) const
     QuadraticForm form;
     for (std::uint32_t i = first_use_[vertex]; i < first_use_[vertex + 1]; ++i)
     {
-        const Tie& tie = ties_[uses_[i].tie];
-        const double share = tie.share[uses_[i].corner];
+        const Tie& tie = ties_[uses_[i] / 4];
+        const double share = tie.share[uses_[i] % 4];
         const double importance = tie.importance * share;
         const double amount = importance * share;
         const Vector3 d{tie.direction[0], tie.direction[1], tie.direction[2]};
@@ -289,9 +291,9 @@ void SurfaceFit::move(std::uint32_t vertex, const Vector3& step)
     places_[vertex] = places_[vertex] + step;
     for (std::uint32_t i = first_use_[vertex]; i < first_use_[vertex + 1]; ++i)
     {
-        Tie& tie = ties_[uses_[i].tie];
+        Tie& tie = ties_[uses_[i] / 4];
         const Vector3 d{tie.direction[0], tie.direction[1], tie.direction[2]};
-        const double moved = tie.share[uses_[i].corner] * precompute::dot(d, step);
+        const double moved = tie.share[uses_[i] % 4] * precompute::dot(d, step);
         tie.distance -= static_cast<float>(moved);
     }
 }

@@ -71,22 +71,18 @@ public:
     [[nodiscard]] const Vector3& place(std::uint32_t vertex) const { return places_[vertex]; }
 
 private:
-    /// A point of the coarse surface, as shares of three vertices, and how far it should move.
+    /// A point of the coarse surface and how far it should move. There are many.
     struct Tie
     {
-        Triangle corner{};
-        std::array<float, 3> share{};
+        std::uint32_t face = 0;
+        std::array<float, 3> share{};      ///< Of the face's vertices.
         std::array<float, 3> direction{};  ///< Of unit length.
         float importance = 1.0F;
         float distance = 0.0F;  ///< Along the direction, to the other surface.
     };
 
-    /// A tie and the corner of it that a vertex is.
-    struct Use
-    {
-        std::uint32_t tie = 0;
-        std::uint32_t corner = 0;
-    };
+    /// A tie and the corner of its face that a vertex is: four times the tie plus the corner.
+    using Use = std::uint32_t;
 
     void tie_source(const FitSource& source, unsigned threads);
     void tie_coarse(const FitSource& source, unsigned threads);

@@ -1,12 +1,11 @@
 // Decodes hostile batches on a sound base: an octahedron or an open strip. Every chunk begins with a
 // row of the index: kind and flags, splits, boundary splits, length, a byte each; then its contents.
 
-#include "codec/base_mesh_encoder.h"
 #include "codec/shapes.h"
 #include "codec/stream_parts.h"
 #include "core/byte_reader.h"
+#include "fuzz/base_stream.h"
 #include "fuzz/decoder_check.h"
-#include "mesh/quantization_grid.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -18,31 +17,7 @@ namespace {
 
 using namespace vsplit;
 
-constexpr int kBits = 10;
 constexpr int kBaseShift = 4;
-
-/// A stream that is nothing but a base.
-test::StreamParts base_stream(const IndexedMesh& mesh)
-{
-    test::StreamParts parts;
-    parts.info.grid = make_grid(mesh.positions, kBits);
-    GridMesh base = quantize(parts.info.grid, mesh);
-    for (auto& position : base.positions)
-    {
-        for (std::int32_t& coordinate : position)
-        {
-            coordinate >>= kBaseShift;
-        }
-    }
-    codec::ChunkInfo row;
-    row.kind = proto::ChunkKind::Base;
-    row.vertices = static_cast<std::uint32_t>(base.positions.size());
-    row.faces = static_cast<std::uint32_t>(base.triangles.size());
-    row.shift = kBaseShift;
-    parts.info.chunks.push_back(row);
-    parts.chunks.push_back(codec::encode_draco_base(base).value().bytes);
-    return parts;
-}
 
 struct Row
 {
@@ -86,8 +61,8 @@ void add_chunk(test::StreamParts& parts, const Row& row, std::span<const std::by
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
-    static const test::StreamParts kClosed = base_stream(test::octahedron());
-    static const test::StreamParts kOpen = base_stream(test::strip(6));
+    static const test::StreamParts kClosed = fuzz::base_stream(test::octahedron(), kBaseShift);
+    static const test::StreamParts kOpen = fuzz::base_stream(test::strip(6), kBaseShift);
     ByteReader reader(std::as_bytes(std::span(data, size)));
     const auto shape = reader.read<std::uint8_t>();
     if (!shape)

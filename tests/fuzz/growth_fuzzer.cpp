@@ -1,12 +1,11 @@
 // Grows hostile meshes over a sound base: an octahedron or an open strip. Two bytes each say how many
 // vertices and faces the complete mesh has; every chunk begins with its length in two bytes.
 
-#include "codec/base_mesh_encoder.h"
 #include "codec/shapes.h"
 #include "codec/stream_parts.h"
 #include "core/byte_reader.h"
+#include "fuzz/base_stream.h"
 #include "fuzz/decoder_check.h"
-#include "mesh/quantization_grid.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -16,31 +15,6 @@
 namespace {
 
 using namespace vsplit;
-
-constexpr int kBits = 10;
-
-/// A stream that is nothing but a base, whose positions lack `shift` bits.
-test::StreamParts base_stream(const IndexedMesh& mesh, int shift)
-{
-    test::StreamParts parts;
-    parts.info.grid = make_grid(mesh.positions, kBits);
-    GridMesh base = quantize(parts.info.grid, mesh);
-    for (auto& position : base.positions)
-    {
-        for (std::int32_t& coordinate : position)
-        {
-            coordinate >>= shift;
-        }
-    }
-    codec::ChunkInfo row;
-    row.kind = proto::ChunkKind::Base;
-    row.vertices = static_cast<std::uint32_t>(base.positions.size());
-    row.faces = static_cast<std::uint32_t>(base.triangles.size());
-    row.shift = shift;
-    parts.info.chunks.push_back(row);
-    parts.chunks.push_back(codec::encode_draco_base(base).value().bytes);
-    return parts;
-}
 
 void add_chunk(test::StreamParts& parts, std::span<const std::byte> contents)
 {
@@ -55,8 +29,8 @@ void add_chunk(test::StreamParts& parts, std::span<const std::byte> contents)
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
-    static const test::StreamParts kClosed = base_stream(test::octahedron(), 3);
-    static const test::StreamParts kOpen = base_stream(test::strip(6), 0);
+    static const test::StreamParts kClosed = fuzz::base_stream(test::octahedron(), 3);
+    static const test::StreamParts kOpen = fuzz::base_stream(test::strip(6), 0);
     ByteReader reader(std::as_bytes(std::span(data, size)));
     const auto shape = reader.read<std::uint8_t>();
     const auto vertices = reader.read<std::uint16_t>();
