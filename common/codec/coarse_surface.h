@@ -3,8 +3,13 @@
 #include "codec/refinement_mesh.h"
 #include "codec/vector3.h"
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
 #include <vector>
 
 namespace vsplit::codec {
@@ -18,12 +23,14 @@ using GrownPositions = std::vector<std::array<std::int32_t, 3>>;
 /// floats in a fixed order, as in vector3.h.
 class CoarseSurface
 {
+    static constexpr float kFar = std::numeric_limits<float>::infinity();
+
 public:
     /// Looks at a mesh whose positions lack `shift` bits of precision.
     CoarseSurface(const RefinementMesh& mesh, int shift, const GrownPositions& positions)
         : mesh_(&mesh),
           positions_(&positions),
-          centre_(static_cast<float>((1 << shift) - 1) * 0.5F),
+          centre_{static_cast<float>((1 << shift) - 1) * 0.5F, 0.0F},
           met_(mesh.vertex_count(), 0)
     {
         face_of_.assign(mesh.vertex_count(), 0);
@@ -36,19 +43,46 @@ public:
         }
     }
 
-    /// A coarse vertex that has not been met, and its squared distance from the place asked.
+    /// A coarse vertex and its squared distance from the place asked; infinite when it was met.
     struct Candidate
     {
         std::uint32_t vertex = 0;
-        float square = 0.0F;
+        float square = kFar;
     };
 
-    /// The candidates near a place, nearest first.
+    /// The vertices of a face and of its neighbours, which a place may be. Written without branches: whether
+    /// a vertex was met cannot be guessed.
     struct Candidates
     {
-        static constexpr std::size_t kMost = 6;
-        std::array<Candidate, kMost> list{};
-        std::size_t size = 0;
+        std::array<Candidate, 6> list{};
+
+        /// The least squared distance and the next one.
+        [[nodiscard]] std::array<float, 2> nearest() const
+        {
+            float first = kFar;
+            float second = kFar;
+            for (const Candidate& candidate : list)
+            {
+                const float larger = first > candidate.square ? first : candidate.square;
+                second = second < larger ? second : larger;
+                first = first < candidate.square ? first : candidate.square;
+            }
+            return {first, second};
+        }
+
+        /// Puts the nearest first, equal ones as they are. Returns those that were not met.
+        [[nodiscard]] std::span<const Candidate> sort()
+        {
+            for (std::size_t end = 1; end < list.size(); ++end)
+            {
+                for (std::size_t i = end; i > 0 && list[i - 1].square > list[i].square; --i)
+                {
+                    std::swap(list[i - 1], list[i]);
+                }
+            }
+            const auto first_met = std::ranges::find(list, kFar, &Candidate::square);
+            return {list.begin(), first_met};
+        }
     };
 
     /// A face with its corners and twice its vector area.
@@ -88,22 +122,23 @@ public:
         const Face& here = mesh_->faces()[ground.face];
         for (std::size_t k = 0; k < 3; ++k)
         {
-            if (!is_met(here.vertex[k]))
-            {
-                add(found, here.vertex[k], ground.corner[k] - place);
-            }
+            found.list[k] = candidate(here.vertex[k], place);
         }
-        for (const Corner beyond : here.opposite)
+        for (std::size_t k = 0; k < 3; ++k)
         {
-            if (beyond < 0)
+            const Corner beyond = here.opposite[k];
+            // Where there is no face the vertex itself, which then is there twice.
+            const Corner there = beyond < 0 ? ground.face * 4 + static_cast<Corner>(k) : beyond;
+            found.list[3 + k] = candidate(mesh_->vertex(there), place);
+        }
+        for (std::size_t i = 3; i < 6; ++i)
+        {
+            bool again = false;
+            for (std::size_t j = 0; j < i; ++j)
             {
-                continue;
+                again |= found.list[j].vertex == found.list[i].vertex;
             }
-            const std::uint32_t vertex = mesh_->vertex(beyond);
-            if (!is_met(vertex))
-            {
-                add(found, vertex, point(vertex) - place);
-            }
+            found.list[i].square = again ? kFar : found.list[i].square;
         }
         return found;
     }
@@ -112,7 +147,7 @@ public:
     [[nodiscard]] Vector3 point(std::uint32_t vertex) const
     {
         const auto& [x, y, z] = (*positions_)[vertex];
-        const float centre = is_met(vertex) ? 0.0F : centre_;
+        const float centre = centre_[met_[vertex]];
         return {
             static_cast<float>(x) + centre,
             static_cast<float>(y) + centre,
@@ -177,29 +212,22 @@ private:
         return beyond;
     }
 
-    /// Adds a vertex, `off` from the place asked, to the candidates.
-    static void add(Candidates& found, std::uint32_t vertex, const Vector3& off)
+    [[nodiscard]] Candidate candidate(std::uint32_t vertex, const Vector3& place) const
     {
-        const float square = dot(off, off);
-        for (std::size_t j = 0; j < found.size; ++j)
-        {
-            if (found.list[j].vertex == vertex)
-            {
-                return;
-            }
-        }
-        std::size_t i = found.size;
-        for (; i > 0 && found.list[i - 1].square > square; --i)
-        {
-            found.list[i] = found.list[i - 1];
-        }
-        found.list[i] = {vertex, square};
-        ++found.size;
+        const auto& [x, y, z] = (*positions_)[vertex];
+        const Vector3 cell{
+            static_cast<float>(x) + centre_[0],
+            static_cast<float>(y) + centre_[0],
+            static_cast<float>(z) + centre_[0],
+        };
+        const Vector3 off = cell - place;
+        constexpr std::array<float, 2> kMetBefore{0.0F, kFar};
+        return {vertex, dot(off, off) + kMetBefore[met_[vertex]]};
     }
 
     const RefinementMesh* mesh_;
     const GrownPositions* positions_;
-    float centre_;
+    std::array<float, 2> centre_;  ///< Of a cell; 0 for a vertex that was met.
     std::vector<std::uint8_t> met_;
     std::vector<std::int32_t> face_of_;
     std::uint32_t met_count_ = 0;

@@ -6,6 +6,7 @@
 #include "codec/grown_mesh.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace vsplit::codec {
@@ -89,9 +90,9 @@ public:
 
     /// Looks at the faces around the vertex of a corner: those of its fan, from the corner on. To be called
     /// once for every vertex, before place(); the result is valid until the next call.
-    [[nodiscard]] const std::vector<RingFace>& look_around(const GrownMesh& mesh, Corner first)
+    [[nodiscard]] std::span<const RingFace> look_around(const GrownMesh& mesh, Corner first)
     {
-        ring_.clear();
+        ring_size_ = 0;
         Corner corner = first;
         do
         {
@@ -107,9 +108,9 @@ public:
                 static_cast<void>(see(mesh, corner));
             }
         }
-        corners_ += ring_.size();
+        corners_ += ring_size_;
         check_distinct();
-        return ring_;
+        return ring();
     }
 
     /// True when every fan looked at was all that its vertex has, and no two of a vertex's edges led to
@@ -126,7 +127,7 @@ public:
         number_[mesh.vertex(ring_.front().corner)] = number;
         ++placed_;
         bool fits = true;
-        for (const RingFace& face : ring_)
+        for (const RingFace& face : ring())
         {
             const bool next_known = face.next_number != kUnknownVertex;
             if (next_known == (face.previous_number != kUnknownVertex))
@@ -153,7 +154,11 @@ private:
     Corner see(const GrownMesh& mesh, Corner corner)
     {
         const Corner next = next_corner(corner);
-        RingFace& face = ring_.emplace_back();
+        if (ring_size_ == ring_.size())
+        {
+            ring_.emplace_back();
+        }
+        RingFace& face = ring_[ring_size_++];
         face.corner = corner;
         face.next = mesh.vertex(next);
         face.previous = mesh.vertex(previous_corner(corner));
@@ -164,6 +169,11 @@ private:
         return beyond < 0 ? -1 : next_corner(beyond);
     }
 
+    [[nodiscard]] std::span<const RingFace> ring() const
+    {
+        return std::span(ring_).first(ring_size_);
+    }
+
     /// Marks the neighbours and takes the marks away again.
     void check_distinct()
     {
@@ -172,7 +182,7 @@ private:
             seen |= known_faces_[vertex];
             known_faces_[vertex] |= kMark;
         };
-        for (const RingFace& face : ring_)
+        for (const RingFace& face : ring())
         {
             mark(face.next);
             if (face.ends)
@@ -180,7 +190,7 @@ private:
                 mark(face.previous);
             }
         }
-        for (const RingFace& face : ring_)
+        for (const RingFace& face : ring())
         {
             known_faces_[face.next] &= static_cast<std::uint8_t>(~kMark);
             known_faces_[face.previous] &= static_cast<std::uint8_t>(~kMark);
@@ -207,6 +217,7 @@ private:
     std::vector<std::uint8_t>
         known_faces_;             ///< By vertex: faces with both others known, to 2; kMark.
     std::vector<RingFace> ring_;  ///< Around the vertex last looked at.
+    std::size_t ring_size_ = 0;   ///< Those of them that are in use.
     std::uint64_t corners_ = 0;   ///< In all rings.
     bool distinct_ = true;
     std::vector<Corner> likely_;    ///< At vertices with two such faces or more.

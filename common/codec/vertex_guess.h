@@ -85,19 +85,20 @@ struct Surroundings
 class Gathering
 {
 public:
-    /// All are read only and must outlive this. `sizes`: by grown vertex.
+    /// All must outlive this. `sizes`: by grown vertex; `seen`: what run() gathers.
     Gathering(
         const GrownMesh& mesh,
         const VertexFront& front,
         const GrownPositions& positions,
-        const std::vector<ResidualSizes>& sizes
+        const std::vector<ResidualSizes>& sizes,
+        Surroundings& seen
     )
-        : mesh_(mesh), front_(front), positions_(positions), sizes_(sizes)
+        : mesh_(mesh), front_(front), positions_(positions), sizes_(sizes), seen_(seen)
     {
     }
 
     /// `ring`: the faces around the vertex, in turn; `bends`: whether curved predictions are wanted.
-    [[nodiscard]] Surroundings run(std::span<const RingFace> ring, bool bends)
+    void run(std::span<const RingFace> ring, bool bends)
     {
         const RingFace* before = nullptr;  // the face before, when it gave a parallelogram
         bool first_gave = false;
@@ -121,7 +122,6 @@ public:
             seen_.tangential /= seen_.known;
             seen_.normal /= seen_.known;
         }
-        return seen_;
     }
 
 private:
@@ -200,7 +200,7 @@ private:
     const VertexFront& front_;
     const GrownPositions& positions_;
     const std::vector<ResidualSizes>& sizes_;
-    Surroundings seen_;
+    Surroundings& seen_;
 };
 
 /// Encoder: 0 for the average, i for the i-th parallelogram, by what residuals would cost about.

@@ -3,6 +3,7 @@
 // New here: the surface and the vertices of a coarse mesh are known. Its vertices are recognised near
 // where a vertex is expected, the others are coded against the traversal's prediction and its surface.
 
+#include "codec/choose.h"
 #include "codec/coarse_surface.h"
 #include "codec/grown_mesh.h"
 #include "codec/growth_model.h"
@@ -16,6 +17,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace vsplit::codec {
@@ -115,9 +117,9 @@ private:
         {
             wanted = {source->coarse(vertex), source->position(vertex)};
         }
-        const auto& ring = front_.look_around(mesh, corner);
-        const Surroundings seen =
-            Gathering(mesh, front_, positions, sizes_).run(ring, shares_.curved > 0);
+        const auto ring = front_.look_around(mesh, corner);
+        Surroundings seen;
+        Gathering(mesh, front_, positions, sizes_, seen).run(ring, shares_.curved > 0);
         if (seen.known == 0)
         {
             // The first vertex of a component is a coarse one.
@@ -129,7 +131,7 @@ private:
         const Vector3 expected = seen.average(static_cast<float>(shares_.curved) * 0.125F);
         const auto& ground = surface.walk(hint_[seen.some], expected);
         hint_[vertex] = ground.face;
-        const auto near = surface.candidates(ground, expected);
+        auto near = surface.candidates(ground, expected);
         const bool coarse = wanted.coarse != kUnknownVertex;
         if (!code_is_coarse(coder, model, near, seen, expected, coarse))
         {
@@ -234,20 +236,19 @@ private:
         constexpr std::int32_t kRate = 6000;
         const Vector3 off = seen.some_position - expected;
         const float reach = dot(off, off) + 1.0F;
-        const auto distance = [&](std::size_t i) {
-            return static_cast<std::size_t>(
-                near.size > i
-                    ? clamp_int(steps_log2<1>((near.list[i].square + 0.25F) / reach) + 22, 0, 30)
-                    : 31
-            );
+        const auto distance = [reach](float square) {
+            const std::int32_t steps = steps_log2<1>((square + 0.25F) / reach) + 22;
+            const bool is_far = square == std::numeric_limits<float>::infinity();
+            return static_cast<std::size_t>(choose(is_far, 31, clamp_int(steps, 0, 30)));
         };
-        const std::size_t nearest = distance(0);
+        const auto [first, second] = near.nearest();
+        const std::size_t nearest = distance(first);
         const std::size_t size = std::min<std::size_t>(seen.tangential, 15);
         return code_logistic<Coder, 3>(
             coder,
             {&model.coarse_nearest[nearest],
              &model.coarse_residual[nearest * 16 + size],
-             &model.coarse_second[nearest * 32 + distance(1)]},
+             &model.coarse_second[nearest * 32 + distance(second)]},
             wanted,
             kRate
         );
@@ -259,15 +260,16 @@ private:
         Coder& coder,
         GrowthModel& model,
         const CoarseSurface& surface,
-        const CoarseSurface::Candidates& near,
+        CoarseSurface::Candidates& near,
         std::uint32_t wanted
     )
     {
-        for (std::size_t i = 0; i < near.size; ++i)
+        const auto sorted = near.sort();
+        for (std::size_t i = 0; i < sorted.size(); ++i)
         {
-            if (code_bit(coder, model.candidate[i], near.list[i].vertex == wanted))
+            if (code_bit(coder, model.candidate[i], sorted[i].vertex == wanted))
             {
-                return near.list[i].vertex;
+                return sorted[i].vertex;
             }
         }
         return code_number(coder, surface, wanted);
