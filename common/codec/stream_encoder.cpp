@@ -28,6 +28,9 @@ constexpr std::size_t kHeaderBytes = 90;
 /// A chunk costs about seven bytes of its own; where the prefix is long, shorter ones bring nothing.
 constexpr std::size_t kSmallestChunkBytes = 700;
 
+/// Vertices for each chunk that levels may be cut into beyond the first: half a percent of the file.
+constexpr std::uint32_t kVerticesPerCut = 600;
+
 /// Builds the stream chunk by chunk, keeping the mesh as the decoder will have it.
 class StreamBuilder
 {
@@ -260,8 +263,8 @@ private:
     }
 
     /// Chunks to cut a level into: each may grow the prefix by a sixth while that is short, by a twelfth
-    /// later, so that prefixes come in fine steps; never beyond the target.
-    std::uint32_t chunk_count(std::uint32_t splits, std::uint64_t refinement) const
+    /// later, so that prefixes come in fine steps, as long as that does not cost too much.
+    std::uint32_t chunk_count(std::uint32_t splits, std::uint64_t refinement)
     {
         const std::size_t prefix = kHeaderBytes + payload_.size();
         const std::size_t most = std::clamp<std::size_t>(
@@ -270,7 +273,11 @@ private:
             proto::kTargetChunkBytes * 5ULL / 8
         );
         const std::uint64_t bytes = (cost_.bits_for(splits) + refinement) / 8;
-        return static_cast<std::uint32_t>(std::max<std::uint64_t>(bytes / most, 1));
+        const std::uint64_t cuts = std::min<std::uint64_t>(
+            std::max<std::uint64_t>(bytes / most, 1) - 1, plan_vertices() / kVerticesPerCut - cuts_
+        );
+        cuts_ += static_cast<std::uint32_t>(cuts);
+        return static_cast<std::uint32_t>(cuts) + 1;
     }
 
     std::uint32_t plan_vertices() const
@@ -374,7 +381,8 @@ private:
     std::uint32_t content_checksum_ = 0;
     std::array<std::int32_t, 3> extent_{};  ///< Largest index per axis.
     SplitCost cost_;
-    bool grown_ = false;  ///< The complete mesh was grown.
+    std::uint32_t cuts_ = 0;  ///< Of levels into chunks so far.
+    bool grown_ = false;      ///< The complete mesh was grown.
 };
 
 }  // namespace
