@@ -146,13 +146,7 @@ public:
     /// Position of a vertex on the full grid: the centre of the cell that is known.
     [[nodiscard]] Vector3 point(std::uint32_t vertex) const
     {
-        const auto& [x, y, z] = (*positions_)[vertex];
-        const float centre = centre_[met_[vertex]];
-        return {
-            static_cast<float>(x) + centre,
-            static_cast<float>(y) + centre,
-            static_cast<float>(z) + centre,
-        };
+        return from_cell(vertex, centre_[met_[vertex]]);
     }
 
     /// A face at a vertex.
@@ -176,6 +170,16 @@ public:
     [[nodiscard]] std::uint32_t vertex_count() const { return mesh_->vertex_count(); }
 
 private:
+    [[nodiscard]] Vector3 from_cell(std::uint32_t vertex, float offset) const
+    {
+        const auto& [x, y, z] = (*positions_)[vertex];
+        return {
+            static_cast<float>(x) + offset,
+            static_cast<float>(y) + offset,
+            static_cast<float>(z) + offset,
+        };
+    }
+
     [[nodiscard]] Ground ground_of(std::int32_t face) const
     {
         Ground ground{.face = face};
@@ -214,13 +218,7 @@ private:
 
     [[nodiscard]] Candidate candidate(std::uint32_t vertex, const Vector3& place) const
     {
-        const auto& [x, y, z] = (*positions_)[vertex];
-        const Vector3 cell{
-            static_cast<float>(x) + centre_[0],
-            static_cast<float>(y) + centre_[0],
-            static_cast<float>(z) + centre_[0],
-        };
-        const Vector3 off = cell - place;
+        const Vector3 off = from_cell(vertex, centre_[0]) - place;
         constexpr std::array<float, 2> kMetBefore{0.0F, kFar};
         return {vertex, dot(off, off) + kMetBefore[met_[vertex]]};
     }

@@ -174,8 +174,8 @@ private:
     }
 
     /// Bends the prediction of two parallelograms, the i-th p + m - c and the j-th m + q - d, if their faces
-    /// share the edge to m and none is bent yet. When six faces lie around m, the vertex e across it from the unknown one makes it
-    /// exact for quadratic surfaces over a lattice: e + (p - d) + (q - c).
+    /// share the edge to m and none is bent yet. When six faces lie around m, the vertex e across it from
+    /// the unknown one makes it exact for quadratic surfaces over a lattice: e + (p - d) + (q - c).
     void bend(const RingFace& first, const RingFace& second, std::size_t i, std::size_t j)
     {
         constexpr std::uint8_t kLattice = 6;
