@@ -28,6 +28,9 @@ constexpr std::size_t kHeaderBytes = 90;
 /// A chunk costs about seven bytes of its own; where the prefix is long, shorter ones bring nothing.
 constexpr std::size_t kSmallestChunkBytes = 700;
 
+/// Length to cut for when a level is long: estimates are off by less than what is left to the target.
+constexpr std::size_t kFullChunkBytes = proto::kTargetChunkBytes * 5ULL / 8;
+
 /// Vertices for each chunk that levels may be cut into beyond the first: half a percent of the file.
 constexpr std::uint32_t kVerticesPerCut = 600;
 
@@ -263,21 +266,21 @@ private:
     }
 
     /// Chunks to cut a level into: each may grow the prefix by a sixth while that is short, by a twelfth
-    /// later, so that prefixes come in fine steps, as long as that does not cost too much.
+    /// later, as long as that does not cost too much; cut for the target they are in any case.
     std::uint32_t chunk_count(std::uint32_t splits, std::uint64_t refinement)
     {
         const std::size_t prefix = kHeaderBytes + payload_.size();
         const std::size_t most = std::clamp<std::size_t>(
-            prefix / 12,
-            std::min(prefix / 6, kSmallestChunkBytes),
-            proto::kTargetChunkBytes * 5ULL / 8
+            prefix / 12, std::min(prefix / 6, kSmallestChunkBytes), kFullChunkBytes
         );
         const std::uint64_t bytes = (cost_.bits_for(splits) + refinement) / 8;
-        const std::uint64_t cuts = std::min<std::uint64_t>(
-            std::max<std::uint64_t>(bytes / most, 1) - 1, plan_vertices() / kVerticesPerCut - cuts_
-        );
-        cuts_ += static_cast<std::uint32_t>(cuts);
-        return static_cast<std::uint32_t>(cuts) + 1;
+        const auto cuts_to = [bytes](std::size_t length) {
+            return static_cast<std::uint32_t>(std::max<std::uint64_t>(bytes / length, 1) - 1);
+        };
+        const std::uint32_t left = plan_vertices() / kVerticesPerCut - cuts_;
+        const auto cuts = std::max(cuts_to(kFullChunkBytes), std::min(cuts_to(most), left));
+        cuts_ += std::min(cuts, left);
+        return cuts + 1;
     }
 
     std::uint32_t plan_vertices() const
