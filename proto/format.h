@@ -38,10 +38,14 @@ inline constexpr std::uint8_t kHasAttributes = 0x20;
 /// stream; kinds from 64 on are optional and may be skipped by their length.
 enum class ChunkKind : std::uint8_t
 {
-    Base = 0,     ///< The base mesh.
-    Batch = 1,    ///< Vertex splits that refine the mesh.
-    Growth = 2,   ///< A part of the complete mesh, grown over the coarse one.
-    Stitch = 64,  ///< Which vertices of the last level are one vertex in the source mesh.
+    Base = 0,         ///< The base mesh.
+    Batch = 1,        ///< Vertex splits that refine the mesh.
+    Growth = 2,       ///< A part of the complete mesh, grown over the coarse one.
+    Parts = 3,        ///< Components that show from a level on.
+    Stitch = 64,      ///< Which vertices of the last level are one vertex in the source mesh.
+    Attributes = 65,  ///< Attributes of what a level added.
+    Appearance = 66,  ///< Materials, groups of faces, descriptions of images.
+    Texture = 67,     ///< A part of an image.
 };
 
 inline constexpr std::uint8_t kFirstOptionalChunkKind = 64;

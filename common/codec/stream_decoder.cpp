@@ -98,4 +98,9 @@ std::span<const std::uint32_t> StreamDecoder::stitches() const
                       : std::span<const std::uint32_t>{};
 }
 
+const LevelAttributes* StreamDecoder::attributes() const
+{
+    return nullptr;
+}
+
 }  // namespace vsplit::codec

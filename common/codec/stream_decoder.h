@@ -1,5 +1,6 @@
 #pragma once
 
+#include "codec/level_attributes.h"
 #include "codec/stream_info.h"
 #include "codec/triangle_updates.h"
 #include "core/result.h"
@@ -39,6 +40,9 @@ struct Step
     TriangleUpdates triangles;   ///< Valid until the next step(), and while the decoder stays.
     /// True when every triangle is another one: read them all with write_triangles().
     bool triangles_replaced = false;
+    /// True when the attributes of the level being shown are complete with this chunk; see
+    /// StreamDecoder::attributes().
+    bool attributes_complete = false;
 };
 
 /// Turns the bytes of a stream, as they come, into a mesh that gets finer. Vertices are appended and
@@ -105,6 +109,10 @@ public:
     /// For each vertex of the complete mesh, the vertex it is one with in the source mesh (itself
     /// for most); empty when nothing was cut or the stream is not complete.
     [[nodiscard]] std::span<const std::uint32_t> stitches() const;
+
+    /// Attributes as of the last step with attributes_complete; nullptr as long as there are none. They
+    /// fit the triangles of the level that they came with, until the next chunk changes these.
+    [[nodiscard]] const LevelAttributes* attributes() const;
 
 private:
     class Impl;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "codec/level_attributes.h"
 #include "core/result.h"
 #include "format.h"
 #include "mesh/quantization_grid.h"
@@ -38,6 +39,9 @@ struct ChunkInfo
     int shift = 0;               ///< Bits of precision that positions lack after it.
     double rms_error = 0.0;      ///< RMS surface distance to the source after it, model units.
     double max_error = 0.0;      ///< Largest sampled surface distance after it, model units.
+    /// Of optional kinds: tells a reader what the chunk is about before it is fetched, by kind; see
+    /// texture_tag(). 0 for others.
+    std::uint32_t tag = 0;
 };
 
 /// The mesh after a number of batches: level 0 is the base mesh.
@@ -69,8 +73,9 @@ struct StreamInfo
     /// headers of different contents differ, so that a transfer is never resumed with another file's
     /// bytes.
     std::uint32_t content_checksum = 0;
-    std::vector<ChunkInfo> chunks;  ///< In file order.
-    std::vector<LevelInfo> levels;  ///< Level 0 first.
+    std::vector<ChunkInfo> chunks;          ///< In file order.
+    std::vector<LevelInfo> levels;          ///< Level 0 first.
+    std::vector<AttributeInfo> attributes;  ///< Empty when the stream has none.
 
     /// Length of the bounding-box diagonal, model units.
     [[nodiscard]] double diagonal() const;
