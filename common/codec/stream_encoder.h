@@ -1,6 +1,7 @@
 #pragma once
 
 #include "codec/batch_coder.h"
+#include "codec/level_attributes.h"
 #include "codec/refinement_mesh.h"
 #include "codec/stream_info.h"
 #include "core/result.h"
@@ -25,6 +26,14 @@ struct Collapse
     SplitKind kind = SplitKind::Interior;
 };
 
+/// What vanishes in a collapse on a mesh with wedges: by face, the right one first, in the order kept,
+/// right, removed and kept, removed, left. 0xFFFFFFFF where there is no such face.
+struct SeamRecord
+{
+    std::array<std::array<std::uint32_t, 3>, 2> wedges{};  ///< At the corners, at that moment.
+    std::array<std::uint32_t, 2> faces{};                  ///< Source triangles.
+};
+
 /// A vertex that is shown elsewhere than at its own position, where the surface is followed better.
 struct Displacement
 {
@@ -38,6 +47,8 @@ struct PlannedLevel
     /// Batches of collapses, coarsest first; within a batch the faces of their stars are disjoint. One
     /// batch, or up to kMaxBatches small ones that share a chunk. Empty for the base.
     std::vector<std::vector<Collapse>> batches;
+    /// One record for each collapse of `batches`; empty when the mesh has no attributes.
+    std::vector<std::vector<SeamRecord>> seams;
     int shift = 0;  ///< Precision of the level; never grows from level to level.
     /// From this level on, as long as the shift stays the same. Only where the shift changes, and of
     /// vertices that the level has.
@@ -56,6 +67,11 @@ struct StreamPlan
     /// For training only: the model to start from instead of initial_model(); what was learned comes
     /// back in it. The stream is then not decodable.
     LearnedModel* training = nullptr;
+    /// Attributes; all of these are empty when there are none.
+    std::vector<AttributeInfo> attributes;
+    std::span<const Triangle> wedges;  ///< By source triangle the wedges at its corners.
+    std::vector<std::vector<std::int32_t>> values;  ///< By attribute and wedge the coded numbers.
+    std::span<const std::uint32_t> groups;          ///< By source triangle; empty: all in group 0.
     std::span<const std::uint32_t> stitches;  ///< As EncodedMesh's; empty when nothing was cut.
     bool grow_last_level = true;              ///< False: splits to the end.
     bool cut_levels = true;                   ///< False: one chunk a level, however long.
