@@ -79,7 +79,7 @@ bool CollapseMesh::keeps_seams(std::uint32_t removed, const OneRing& ring, std::
     if (seams == 1)
     {
         // The end of a seam moves freely, but may not touch another one nor shorten its own to nothing.
-        return !along && !is_on_seam(target) && !is_boundary(target);
+        return !is_on_seam(target) && !is_boundary(target);
     }
     // Inner vertices of a seam move along it; where three meet they stay.
     if (seams != 2 || !along || wedge(next(sides.right)) == wedge(previous(sides.left)))
