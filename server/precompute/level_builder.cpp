@@ -119,8 +119,9 @@ void LevelBuilder::collect_vertex(std::uint32_t vertex, const LevelStyle& style)
     for (std::size_t kept = 0; kept < ring.size; ++kept)
     {
         candidates[kept] = {};
-        // A boundary vertex moves only along the boundary.
-        if (ring.boundary && kept != 0 && kept + 1 != ring.size)
+        // A boundary vertex moves only along the boundary, a seam's only along the seam.
+        if ((ring.boundary && kept != 0 && kept + 1 != ring.size) ||
+            !mesh_.keeps_seams(vertex, ring, kept))
         {
             continue;
         }
@@ -277,6 +278,10 @@ bool LevelBuilder::try_vertex(
         }
         reward_neighbours(ring, style);
         done.push_back(describe_collapse(vertex, ring, kept));
+        if (mesh_.has_wedges())
+        {
+            seams_.push_back(mesh_.seam_record(ring, kept));
+        }
         mesh_.collapse(vertex, ring, kept);
         cost_.merge(vertex, ring.vertex[kept]);
         return true;
@@ -301,10 +306,33 @@ codec::Collapse describe_collapse(std::uint32_t removed, const OneRing& ring, st
     return collapse;
 }
 
+void LevelBuilder::put_in_order(std::vector<codec::Collapse>& done)
+{
+    // Whoever carries them out again walks through memory in order.
+    const std::size_t count = done.size() - std::min(kCostliest, done.size());
+    const auto first = done.begin();
+    const auto costliest = first + static_cast<std::ptrdiff_t>(count);
+    if (!seams_.empty())
+    {
+        std::vector<std::pair<std::uint32_t, std::size_t>> order(count);
+        for (std::size_t i = 0; i < count; ++i)
+        {
+            order[i] = {done[i].removed, i};
+        }
+        std::ranges::sort(order);
+        const std::vector<codec::SeamRecord> unordered = seams_;
+        std::ranges::transform(order, seams_.begin(), [&](const auto& entry) {
+            return unordered[entry.second];
+        });
+    }
+    std::ranges::sort(first, costliest, {}, &codec::Collapse::removed);
+}
+
 std::vector<codec::Collapse> LevelBuilder::next_level(const LevelStyle& style, std::size_t most)
 {
     collect(style);
     rank(style);
+    seams_.clear();
     std::vector<codec::Collapse> done;
     const auto share =
         static_cast<std::size_t>(style.largest_share * static_cast<double>(alive_.size()));
@@ -321,10 +349,7 @@ std::vector<codec::Collapse> LevelBuilder::next_level(const LevelStyle& style, s
         }
     }
     std::erase_if(alive_, [this](std::uint32_t v) { return mesh_.is_removed(v); });
-    // Whoever carries them out again walks through memory in order.
-    const auto costliest =
-        done.end() - static_cast<std::ptrdiff_t>(std::min(kCostliest, done.size()));
-    std::ranges::sort(done.begin(), costliest, {}, &codec::Collapse::removed);
+    put_in_order(done);
     return done;
 }
 

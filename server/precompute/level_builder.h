@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace vsplit::precompute {
@@ -55,6 +56,9 @@ public:
         const LevelStyle& style, std::size_t most
     );
 
+    /// What the collapses of the last next_level() took away, in its order; empty without wedges.
+    [[nodiscard]] std::vector<codec::SeamRecord> take_seams() { return std::move(seams_); }
+
     /// Vertices left.
     [[nodiscard]] std::size_t vertex_count() const { return alive_.size(); }
 
@@ -82,6 +86,7 @@ private:
     bool try_vertex(
         std::uint32_t vertex, const LevelStyle& style, std::vector<codec::Collapse>& done
     );
+    void put_in_order(std::vector<codec::Collapse>& done);
     void reward_neighbours(const OneRing& ring, const LevelStyle& style);
 
     CollapseMesh& mesh_;
@@ -96,6 +101,7 @@ private:
     /// or cannot go.
     std::vector<float> best_key_;
     std::vector<std::pair<float, std::uint32_t>> heap_;
+    std::vector<codec::SeamRecord> seams_;  ///< By collapse of the last level.
 };
 
 }  // namespace vsplit::precompute
