@@ -35,6 +35,9 @@ inline constexpr std::uint8_t kSinglePrecisionGrid = 0x80;
 /// Added to the position bits when a table of attributes follows.
 inline constexpr std::uint8_t kHasAttributes = 0x20;
 
+/// Added to an attribute's kind when colours are coded as red, green and blue.
+inline constexpr std::uint8_t kRgbColor = 0x08;
+
 /// What a chunk holds. Kinds below 64 are required: a reader that does not know one refuses the
 /// stream; kinds from 64 on are optional and may be skipped by their length.
 enum class ChunkKind : std::uint8_t

@@ -16,6 +16,54 @@ inline constexpr std::uint32_t kNoWedge = std::numeric_limits<std::uint32_t>::ma
 /// Contexts of the residuals of one number of a value, by how large they are expected to be.
 inline constexpr std::size_t kResidualContexts = 24;
 
+namespace detail {
+
+/// Observations that the initial state of a residual's model stands for.
+inline constexpr std::uint16_t kInitialObservations = 4;
+
+/// A probability as an AdaptiveBit has it.
+[[nodiscard]] constexpr AdaptiveBit initial_bit(double probability)
+{
+    const double kept = probability < 0.01 ? 0.01 : probability > 0.99 ? 0.99 : probability;
+    return {static_cast<std::uint16_t>(kept * 65536.0 + 0.5), kInitialObservations};
+}
+
+/// What residuals of mean size 2^((context - 4) / 2) look like when they decay exponentially.
+[[nodiscard]] constexpr IntegerModel initial_residual(std::size_t context)
+{
+    constexpr double kRootHalf = 0.70710678118654752440;
+    double size = 0.25;
+    for (std::size_t c = 0; c < context; c += 2)
+    {
+        size *= c + 1 == context ? 1.0 / kRootHalf : 2.0;
+    }
+    IntegerModel model;
+    model.nonzero = initial_bit(table_exp(-0.5 / size));
+    double power = 1.0;
+    for (std::size_t e = 0; e < model.prefix.size(); ++e)
+    {
+        const double exponent = power / size;
+        model.prefix[e] = initial_bit(exponent > 16.0 ? 0.0 : table_exp(-exponent));
+        power *= 2.0;
+    }
+    return model;
+}
+
+/// The same for all contexts.
+[[nodiscard]] constexpr std::array<IntegerModel, kResidualContexts> initial_residuals()
+{
+    std::array<IntegerModel, kResidualContexts> models{};
+    for (std::size_t context = 0; context < models.size(); ++context)
+    {
+        models[context] = initial_residual(context);
+    }
+    return models;
+}
+
+inline constexpr auto kInitialResiduals = initial_residuals();
+
+}  // namespace detail
+
 /// Learned statistics of wedges and groups.
 struct WedgeModel
 {
@@ -30,7 +78,11 @@ struct WedgeModel
 struct ValueModel
 {
     AdaptiveBit same_value{};  ///< As another wedge of the vertex.
-    std::array<std::array<IntegerModel, kResidualContexts>, 4> residual{};
+    std::array<std::array<IntegerModel, kResidualContexts>, 4> residual{
+        detail::kInitialResiduals,
+        detail::kInitialResiduals,
+        detail::kInitialResiduals,
+        detail::kInitialResiduals};
 };
 
 /// Everything that lasts from one level's attributes to the next.

@@ -31,8 +31,18 @@ void write_normal(std::span<const std::int32_t> coded, int bits, std::span<float
 
 /// Turns brightness and two differences back into red, green and blue.
 /// Source: Malvar, Sullivan, "YCoCg-R: A Color Space with RGB Reversibility and Low Dynamic Range", 2003.
-void write_color(std::span<const std::int32_t> coded, float cell, std::span<float> out)
+void write_color(
+    const AttributeInfo& info, std::span<const std::int32_t> coded, std::span<float> out
+)
 {
+    if (info.rgb)
+    {
+        std::ranges::transform(coded, out.begin(), [&](std::int32_t number) {
+            return static_cast<float>(number) * info.cell;
+        });
+        return;
+    }
+    const float cell = info.cell;
     const std::int32_t t = coded[0] - (coded[2] >> 1);
     const std::int32_t green = coded[2] + t;
     const std::int32_t blue = t - (coded[1] >> 1);
@@ -51,7 +61,8 @@ void write_color(std::span<const std::int32_t> coded, float cell, std::span<floa
 
 bool is_valid(const AttributeInfo& info)
 {
-    const bool bits = info.bits >= 1 && info.bits <= kMaxAttributeBits;
+    const bool bits = info.bits >= 1 && info.bits <= kMaxAttributeBits &&
+                      (!info.rgb || info.kind == AttributeKind::Color);
     switch (info.kind)
     {
         case AttributeKind::TexCoord:
@@ -84,7 +95,7 @@ void write_values(
         }
         if (info.kind == AttributeKind::Color)
         {
-            write_color(value, info.cell, target);
+            write_color(info, value, target);
             continue;
         }
         for (std::size_t k = 0; k < numbers; ++k)

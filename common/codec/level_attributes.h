@@ -22,6 +22,8 @@ struct AttributeInfo
     std::uint8_t set = 0;         ///< Number among the attributes of its kind.
     std::uint8_t components = 2;  ///< Of a value: 2 texture coordinates, 3 normals, 1 .. 4 others.
     std::uint8_t bits = 10;       ///< Of a coded number, 1 .. 16.
+    /// Colours only: coded as red, green and blue, not as brightness and two differences.
+    bool rgb = false;
     std::string name;
     std::array<float, 4> origin{};  ///< By component the value of 0; not used by normals.
     float cell = 1.0F;              ///< Step of a value, > 0; not used by normals.

@@ -231,7 +231,8 @@ private:
     std::vector<std::int32_t> values_;
     std::vector<std::array<float, 3>> deviations_;  ///< By wedge, from the derived normal.
     std::vector<float> sizes_;                      ///< By wedge, mean size of its residuals.
-    std::array<std::array<IntegerModel, kResidualContexts>, 2> models_{};
+    std::array<std::array<IntegerModel, kResidualContexts>, 2> models_{
+        detail::kInitialResiduals, detail::kInitialResiduals};
 };
 
 }  // namespace vsplit::codec

@@ -297,9 +297,13 @@ private:
     GrowthStart start_of_growth(std::size_t level) const
     {
         const bool may = plan_.grow_last_level && plan_.training == nullptr;
-        return may && level + 1 < plan_.levels.size()
-                   ? growth_start(payload_.size(), plan_vertices(), plan_.levels[level].shift)
-                   : GrowthStart::Never;
+        return may && level + 1 < plan_.levels.size() ? growth_start(
+                                                            payload_.size(),
+                                                            plan_vertices(),
+                                                            plan_.levels[level].shift,
+                                                            !plan_.wedges.empty()
+                                                        )
+                                                      : GrowthStart::Never;
     }
 
     /// Makes a copy of this stream that goes on with the growth of the complete mesh; nothing when the

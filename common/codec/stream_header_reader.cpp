@@ -90,7 +90,8 @@ Result<AttributeInfo> read_attribute(ByteReader reader)
     const auto bits = reader.read<std::uint8_t>();
     VSPLIT_TRY(bits);
     AttributeInfo info;
-    info.kind = static_cast<AttributeKind>(*shape & 15);
+    info.kind = static_cast<AttributeKind>(*shape & 7);
+    info.rgb = (*shape & proto::kRgbColor) != 0;
     info.components = *shape >> 4;
     info.set = *set;
     info.bits = *bits;

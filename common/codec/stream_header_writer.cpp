@@ -156,9 +156,10 @@ void code_extent(BitEncoder& bits, const QuantizationGrid& grid, std::array<std:
 void write_attribute(ByteWriter& out, const AttributeInfo& info)
 {
     ByteWriter entry;
-    entry.write(
-        static_cast<std::uint8_t>(info.components << 4 | static_cast<std::uint8_t>(info.kind))
-    );
+    entry.write(static_cast<std::uint8_t>(
+        info.components << 4 | (info.rgb ? proto::kRgbColor : 0) |
+        static_cast<std::uint8_t>(info.kind)
+    ));
     entry.write(info.set);
     entry.write(info.bits);
     if (has_grid(info))

@@ -32,7 +32,7 @@ struct NumberRange
 [[nodiscard]] inline NumberRange number_range(const AttributeInfo& info, std::size_t k)
 {
     const std::int32_t high = (1 << info.bits) - 1;
-    const bool difference = info.kind == AttributeKind::Color && (k == 1 || k == 2);
+    const bool difference = info.kind == AttributeKind::Color && !info.rgb && (k == 1 || k == 2);
     return {difference ? -high : 0, high};
 }
 
@@ -69,7 +69,7 @@ public:
                 state_.shown.values[a].resize(
                     state.shown.wedge_vertices.size() * coded_components(attributes[a])
                 );
-                sizes_[a].resize(left_);
+                sizes_[a].resize(left_ * coded_components(attributes[a]));
             }
         }
     }
@@ -161,10 +161,7 @@ private:
         {
             expected[k] = expect(attribute, value.size(), k);
         }
-        const double size =
-            expected_size(attribute, wedge, std::span(expected).first(value.size()));
-        double before = size;
-        double sum = 0.0;
+        double before = 0.0;
         for (std::size_t k = 0; k < value.size(); ++k)
         {
             const NumberRange range = number_range(info, k);
@@ -174,8 +171,10 @@ private:
             const double rounded = std::floor(likely + 0.5);
             const double rest = likely - rounded;
             const std::size_t sign = rest < -0.171875 ? 2 : rest > 0.171875 ? 0 : 1;
+            const double size = expected_size(attribute, wedge, k, value.size(), expected[k]);
+            before = k == 0 ? size : before;
             auto& model = state_.value_models[attribute]
-                              .residual[k][residual_context(0.5 * size + 0.5 * before)];
+                              .residual[k][residual_context(kOwn * size + kBefore * before)];
             const auto base = static_cast<std::int32_t>(rounded);
             const std::int32_t residual = code_integer(coder, model, value[k] - base, sign);
             value[k] = base + residual;
@@ -184,10 +183,9 @@ private:
                 return fail(ErrorCode::BadChunk, "a value of an attribute is out of its range");
             }
             before = static_cast<double>(std::abs(residual));
-            sum = sum + before;
+            sizes_[attribute][(wedge - first_new_) * value.size() + k] =
+                static_cast<float>(1.0 + before);
         }
-        sizes_[attribute][wedge - first_new_] =
-            static_cast<float>(1.0 + sum / static_cast<double>(value.size()));
         return {};
     }
 
@@ -208,21 +206,19 @@ private:
         return expected;
     }
 
-    /// How large the residual is expected to be: as those of the neighbours, and as the fit is off.
+    /// How large the residual of number `k` of `numbers` is expected to be: as those of the neighbours, and
+    /// as the fit is off.
     [[nodiscard]] double expected_size(
-        std::size_t attribute, std::uint32_t wedge, std::span<const ExpectedNumber> expected
+        std::size_t attribute,
+        std::uint32_t wedge,
+        std::size_t k,
+        std::size_t numbers,
+        const ExpectedNumber& expected
     ) const
     {
         if (fit_.size() == 0)
         {
             return static_cast<double>(1 << attributes_[attribute].bits);
-        }
-        double slopes = 0.0;
-        double errors = 0.0;
-        for (const ExpectedNumber& number : expected)
-        {
-            slopes = slopes + number.slope_squared;
-            errors = errors + number.error_squared;
         }
         double sum = 0.0;
         double count = 0.0;
@@ -231,23 +227,24 @@ private:
             for (const Corner beside : {next_corner(corner), previous_corner(corner)})
             {
                 const std::uint32_t other = neighbours_.wedge(beside);
-                const float seen =
-                    other < first_new_ ? 0.0F : sizes_[attribute][other - first_new_];
+                const float seen = other < first_new_
+                                       ? 0.0F
+                                       : sizes_[attribute][(other - first_new_) * numbers + k];
                 sum = sum + (seen > 0.0F ? static_cast<double>(seen) - 1.0 : 0.0);
                 count = count + (seen > 0.0F ? 1.0 : 0.0);
             }
         }
-        const double steep = std::sqrt(slopes * fit_.reach_squared());
+        const double steep = std::sqrt(expected.slope_squared * fit_.reach_squared());
         const bool fits = fit_.size() > 3;
         double size = 0.2 * steep;
         if (count > 0.0)
         {
             const double seen = sum / count;
-            size = fits ? (2.0 * seen + std::sqrt(errors)) / 3.0 : seen;
+            size = fits ? (2.0 * seen + std::sqrt(expected.error_squared)) / 3.0 : seen;
         }
         else if (fits)
         {
-            size = std::sqrt(errors);
+            size = std::sqrt(expected.error_squared);
         }
         if (fit_.size() < 3)
         {
@@ -264,6 +261,10 @@ private:
         );
     }
 
+    /// What the residual of the number before tells of the next one, beside what is expected of it.
+    static constexpr double kOwn = 0.75;
+    static constexpr double kBefore = 0.25;
+
     std::span<const AttributeInfo> attributes_;
     const LevelMesh& mesh_;
     AttributeState& state_;
@@ -272,7 +273,7 @@ private:
     std::uint32_t twin_ = kNoWedge;
     std::uint32_t first_new_;
     std::uint32_t left_;
-    /// By attribute and new wedge 1 + the mean size of its residuals; 0 where there are none.
+    /// By attribute and number of each new wedge 1 + the size of its residual; 0 where there is none.
     std::vector<std::vector<float>> sizes_;
 };
 

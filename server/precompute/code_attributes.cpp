@@ -4,8 +4,9 @@
 #include "precompute/wedges.h"
 
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -55,11 +56,22 @@ std::int32_t rounded(double value, std::int32_t most)
     );
 }
 
-void code_color(std::span<const float> value, std::int32_t most, std::span<std::int32_t> coded)
+void code_color(
+    const codec::AttributeInfo& info, std::span<const float> value, std::span<std::int32_t> coded
+)
 {
+    const std::int32_t most = (1 << info.bits) - 1;
     const auto channel = [&](std::size_t k) {
         return rounded(static_cast<double>(value[k]) * most, most);
     };
+    if (info.rgb)
+    {
+        for (std::size_t k = 0; k < value.size(); ++k)
+        {
+            coded[k] = channel(k);
+        }
+        return;
+    }
     const std::int32_t orange = channel(0) - channel(2);
     const std::int32_t t = channel(2) + (orange >> 1);
     const std::int32_t green = channel(1) - t;
@@ -93,7 +105,7 @@ void code_value(
     const std::int32_t most = (1 << info.bits) - 1;
     if (info.kind == AttributeKind::Color)
     {
-        code_color(value, most, coded);
+        code_color(info, value, coded);
         return;
     }
     if (info.kind == AttributeKind::Normal)
@@ -106,6 +118,38 @@ void code_value(
         const double off = static_cast<double>(value[k]) - static_cast<double>(info.origin[k]);
         coded[k] = rounded(off / static_cast<double>(info.cell), most);
     }
+}
+
+/// Rounds all values.
+void code_values(const SurfaceAttribute& attribute, CodedAttribute& coded)
+{
+    const std::size_t numbers = codec::coded_components(coded.info);
+    coded.values.resize(attribute.size() * numbers);
+    for (std::size_t i = 0; i < attribute.size(); ++i)
+    {
+        code_value(
+            coded.info,
+            std::span(attribute.values).subspan(i * attribute.components, attribute.components),
+            std::span(coded.values).subspan(i * numbers, numbers)
+        );
+    }
+}
+
+/// About how many bits the differences along the edges take.
+std::uint64_t difference_bits(const CodedAttribute& coded)
+{
+    const std::size_t numbers = codec::coded_components(coded.info);
+    std::uint64_t bits = 0;
+    for (const auto& [a, b, c] : coded.corners)
+    {
+        for (std::size_t k = 0; k < numbers; ++k)
+        {
+            const auto size =
+                std::abs(coded.values[a * numbers + k] - coded.values[b * numbers + k]);
+            bits += static_cast<std::uint64_t>(std::bit_width(static_cast<std::uint32_t>(size)));
+        }
+    }
+    return bits;
 }
 
 /// Makes equal values one.
@@ -185,17 +229,19 @@ Result<CodedAttribute> code_attribute(const SurfaceAttribute& attribute, const A
     {
         coded.info.cell = 1.0F / static_cast<float>((1 << coded.info.bits) - 1);
     }
-    const std::size_t numbers = codec::coded_components(coded.info);
-    coded.values.resize(attribute.size() * numbers);
-    for (std::size_t i = 0; i < attribute.size(); ++i)
-    {
-        code_value(
-            coded.info,
-            std::span(attribute.values).subspan(i * attribute.components, attribute.components),
-            std::span(coded.values).subspan(i * numbers, numbers)
-        );
-    }
     coded.corners = attribute.corners;
+    code_values(attribute, coded);
+    if (attribute.kind == AttributeKind::Color)
+    {
+        // Scans and photographs vary in brightness, scales of false colours in one channel at a time.
+        CodedAttribute other = coded;
+        other.info.rgb = true;
+        code_values(attribute, other);
+        if (difference_bits(other) < difference_bits(coded))
+        {
+            coded = std::move(other);
+        }
+    }
     merge_equal(coded);
     return coded;
 }
