@@ -12,6 +12,9 @@
 
 namespace vsplit::codec {
 
+/// Most bits of a coded number.
+inline constexpr std::uint8_t kMaxAttributeBits = 16;
+
 /// What the header tells of an attribute. Normals are coded as two numbers, see write_values().
 struct AttributeInfo
 {
@@ -41,6 +44,15 @@ struct LevelAttributes
 [[nodiscard]] inline std::size_t coded_components(const AttributeInfo& info)
 {
     return info.kind == AttributeKind::Normal ? 2 : info.components;
+}
+
+/// Tells whether attributes like this one can be coded: kind, components and bits fit each other.
+[[nodiscard]] bool is_valid(const AttributeInfo& info);
+
+/// Tells whether an attribute has an origin and a cell of its own; colours and normals have not.
+[[nodiscard]] inline bool has_grid(const AttributeInfo& info)
+{
+    return info.kind == AttributeKind::TexCoord || info.kind == AttributeKind::Scalar;
 }
 
 /// Turns coded numbers into values: `components` floats for every value; normals are unit vectors.

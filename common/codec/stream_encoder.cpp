@@ -1,5 +1,6 @@
 #include "codec/stream_encoder.h"
 
+#include "codec/attribute_writer.h"
 #include "codec/base_mesh_encoder.h"
 #include "codec/batch_coder.h"
 #include "codec/entropy_coder.h"
@@ -82,7 +83,7 @@ public:
         {
             StreamBuilder& grown = pays(late) ? *late : *early;
             grown.add_stitches();
-            return grown.assemble();
+            return grown.finish();
         }
         if (state_.mesh.vertex_count() != plan_.mesh->positions.size() ||
             state_.mesh.face_count() != plan_.mesh->triangles.size() || state_.shift != 0)
@@ -94,7 +95,7 @@ public:
             *plan_.training = *state_.model;
         }
         add_stitches();
-        return assemble();
+        return finish();
     }
 
 private:
@@ -359,6 +360,19 @@ private:
         add_chunk(proto::ChunkKind::Stitch, chunk.view(), nullptr);
     }
 
+    /// The stream with all that lies on its meshes.
+    Result<std::vector<std::byte>> finish()
+    {
+        std::vector<std::byte> file = assemble();
+        if (plan_.wedges.empty())
+        {
+            return file;
+        }
+        const auto attributes = code_attributes(file, plan_, source_);
+        VSPLIT_TRY(attributes);
+        return insert_chunks(file, *attributes);
+    }
+
     std::vector<std::byte> assemble()
     {
         StreamInfo info;
@@ -367,6 +381,7 @@ private:
         info.face_count = plan_faces();
         info.chunks = std::move(chunks_);
         info.content_checksum = content_checksum_;
+        info.attributes = plan_.attributes;
         std::vector<std::byte> file = write_stream_header(info, extent_);
         const auto payload = payload_.view();
         file.insert(file.end(), payload.begin(), payload.end());

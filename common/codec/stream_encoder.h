@@ -1,6 +1,7 @@
 #pragma once
 
 #include "codec/batch_coder.h"
+#include "codec/level_attributes.h"
 #include "codec/refinement_mesh.h"
 #include "codec/stream_info.h"
 #include "core/result.h"
@@ -75,6 +76,9 @@ struct StreamPlan
     /// For training only: the model to start from instead of initial_model(); what was learned comes
     /// back in it. The stream is then not decodable.
     LearnedModel* training = nullptr;
+    /// What the header tells of attributes, and the values; with them go `wedges` and `groups`.
+    std::vector<AttributeInfo> attributes;
+    std::vector<std::vector<std::int32_t>> values;  ///< By attribute and wedge the coded numbers.
     std::span<const std::uint32_t> stitches;  ///< As EncodedMesh's; empty when nothing was cut.
     /// By triangle of `mesh` the wedges at its corners, 0 .. W - 1; empty when nothing lies on it.
     std::span<const Triangle> wedges;

@@ -51,6 +51,8 @@ struct Source
     std::vector<float> weights;         ///< What the metric needs.
     std::vector<Triangle> wedges;       ///< By triangle those at its corners; or empty.
     std::vector<std::uint32_t> groups;  ///< By triangle; or empty.
+    std::vector<codec::AttributeInfo> attributes;
+    std::vector<std::vector<std::int32_t>> values;  ///< By attribute and wedge.
 };
 
 /// The collapse sequence.
@@ -154,6 +156,8 @@ codec::StreamPlan make_plan(
     plan.stitches = source.stitches;
     plan.wedges = source.wedges;
     plan.groups = source.groups;
+    plan.attributes = source.attributes;
+    plan.values = source.values;
     plan.base_wedges = std::move(sequence.base_wedges);
     plan.base_faces = std::move(sequence.base_faces);
     std::size_t batch = sequence.seams.size();
@@ -341,6 +345,8 @@ Result<void> prepare_faces(const EncodeInput& input, Source& source)
             triangle_order(input.mesh.triangles, locality_order(input.mesh.positions));
         source.wedges = in_order(std::span<const Triangle>(input.wedges), order);
         source.groups = in_order(std::span<const std::uint32_t>(input.groups), order);
+        source.attributes = input.attributes;
+        source.values = input.values;
     }
     return {};
 }

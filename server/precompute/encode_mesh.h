@@ -39,6 +39,8 @@ struct EncodeInput
     std::vector<std::uint32_t> stitches;  ///< As encode_mesh() takes them.
     std::vector<Triangle> wedges;       ///< By triangle, as split_wedges() makes them; empty: none.
     std::vector<std::uint32_t> groups;  ///< One number a triangle; empty: all in 0.
+    std::vector<codec::AttributeInfo> attributes;
+    std::vector<std::vector<std::int32_t>> values;  ///< By attribute and wedge the coded numbers.
 };
 
 /// Called now and then with the stage's name and its share done, 0 .. 1; from the encoding thread.
