@@ -46,7 +46,7 @@ struct Source
     GridMesh quantised;
     std::vector<Vector3> exact;  ///< Positions in grid units, not rounded.
     std::vector<std::uint32_t> stitches;
-    std::vector<std::uint8_t> locked;  ///< Vertices that are never removed; or empty.
+    std::vector<std::uint8_t> locked;  ///< Copies of cut vertices: always at home; or empty.
     std::vector<float> importance;
     std::vector<float> weights;         ///< What the metric needs.
     std::vector<Triangle> wedges;       ///< By triangle those at its corners; or empty.
@@ -81,7 +81,8 @@ Sequence make_sequence(
     CollapseCost cost(
         options.metric, source.exact, working, std::move(source.weights), source.importance
     );
-    LevelBuilder builder(working, cost, source.exact, source.locked, options.threads);
+    LevelBuilder builder(working, cost, source.exact, {}, options.threads);
+    builder.fold_together(source.stitches);
     const std::size_t base = next_stop(options, 0, vertex_count);
     Sequence sequence;
     bool choosy = true;
@@ -233,7 +234,7 @@ Result<Source> prepare(
     {
         vertex = place[vertex];
     }
-    source.locked = lock_copies(source.stitches);
+    source.locked = mark_copies(source.stitches);
     source.grid = make_grid(ordered.positions, options.position_bits);
     source.quantised = quantize(source.grid, ordered);
     source.exact.resize(ordered.positions.size());
