@@ -139,6 +139,11 @@ image::TextureOptions options_from_environment()
     {
         options.layer_ratio = std::atof(ratio);
     }
+    if (const char* value = std::getenv("VSPLIT_PSNR"))
+    {
+        options.psnr = std::atof(value);
+    }
+    options.lossless = std::getenv("VSPLIT_LOSSLESS") != nullptr;
     return options;
 }
 
