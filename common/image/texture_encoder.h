@@ -21,7 +21,7 @@ struct TextureOptions
     double cheap_bits_per_pixel = 0.25;
     bool lossless = false;       ///< Exact (after scaling down); `psnr` does not count then.
     bool is_normal_map = false;  ///< Channels are directions, not a colour.
-    std::uint32_t preview_bytes = 1250;  ///< About the length of the first chunk.
+    std::uint32_t preview_bytes = 1400;  ///< About the length of the first chunk.
     double layer_ratio = 1.414;  ///< About how much longer each quality layer makes the prefix.
 };
 
