@@ -1,3 +1,5 @@
+#include "core/byte_reader.h"
+#include "core/file_io.h"
 #include "format.h"
 #include "image/downsample.h"
 #include "image/sample_raster.h"
@@ -253,6 +255,22 @@ TEST(TextureDecoder, HalvesUntilThePictureFits)
     const auto tiny = decoder.picture(1);
     ASSERT_TRUE(tiny) << tiny.error().message;
     EXPECT_EQ(tiny->width, 1U);
+}
+
+TEST(TextureDecoder, ReadsGoldenChunks)
+{
+    // Chunks, each after its length in two bytes.
+    const auto file = read_file(VSPLIT_SOURCE_DIR "/tests/golden/texture/rgba_lossless.chunks");
+    ASSERT_TRUE(file) << file.error().message;
+    ByteReader reader(*file);
+    TextureDecoder decoder;
+    while (const auto length = reader.read<std::uint16_t>())
+    {
+        ASSERT_TRUE(decoder.feed(*reader.read_bytes(*length)));
+    }
+    const auto picture = decoder.picture(64);
+    ASSERT_TRUE(picture) << picture.error().message;
+    EXPECT_EQ(*picture, sample_raster(24, 30, 4));
 }
 
 TEST(TextureTag, SaysWhatAChunkIsFor)
