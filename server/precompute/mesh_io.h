@@ -8,7 +8,7 @@
 namespace vsplit::precompute {
 
 /// Reads a mesh file: OBJ, PLY (ascii, both byte orders, triangle strips), OFF, STL (ascii, binary),
-/// OM (OpenMesh).
+/// OM (OpenMesh), GLB and glTF 2.0.
 /// Polygons are triangulated as fans. Nothing is repaired; see repair_mesh().
 /// `path`: the format is told by the extension, then checked against the contents.
 /// Result: the triangles in file order, model units.

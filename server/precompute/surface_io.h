@@ -7,7 +7,7 @@
 
 namespace vsplit::precompute {
 
-/// Reads a model: OBJ with its materials, PLY, OFF, STL, OM (the latter three without attributes).
+/// Reads a model: GLB, glTF 2.0, OBJ with its materials, PLY, OFF, STL, OM (the latter three without attributes).
 /// Polygons are triangulated as fans. Nothing is repaired; see repair_surface().
 /// `path`: the format is told by the extension, then checked against the contents; images and material
 /// libraries are read from its folder and below it, nowhere else.
