@@ -108,6 +108,7 @@ Result<void> Refiner::follow(const codec::Step& step, Progress& progress)
     progress.bytes.add(step.chunk->kind, step.chunk_bytes);
     // Attributes fit the mesh that they came with, until it changes.
     fitting_ = step.attributes_complete || (fitting_ && !is_required(*step.chunk));
+    at_level_ = step.level_complete || (at_level_ && !is_required(*step.chunk));
     if (step.level_complete)
     {
         awaiting_ = attributes_ && !fitting_ && awaits_attributes();

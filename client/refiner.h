@@ -82,6 +82,9 @@ public:
     /// True when levels are shown with make_surface().
     [[nodiscard]] bool shows_surface() const { return attributes_; }
 
+    /// True when the mesh is a level and not on its way to one.
+    [[nodiscard]] bool at_level() const { return at_level_; }
+
     /// The arrays of the level that was reached, with its attributes if they came with it.
     /// `appearance`: its materials sort the triangles; may be null. Cost: linear in the level.
     [[nodiscard]] SurfaceArrays make_surface(const Appearance* appearance) const;
@@ -102,6 +105,7 @@ private:
     TriangleSource triangles_;
     AppearanceSink sink_;
     bool attributes_ = false;
+    bool at_level_ = false;
     bool awaiting_ = false;  ///< The level is reached, its attributes are on their way.
     bool fitting_ = false;   ///< The decoder's attributes are those of the level.
 };
