@@ -22,7 +22,7 @@ struct TextureOptions
     bool lossless = false;       ///< Exact (after scaling down); `psnr` does not count then.
     bool is_normal_map = false;  ///< Channels are directions, not a colour.
     std::uint32_t preview_bytes = 1250;  ///< About the length of the first chunk.
-    double layer_ratio = 2.0;  ///< About how much longer each quality layer makes the prefix.
+    double layer_ratio = 1.414; ///< About how much longer each quality layer makes the prefix.
 };
 
 /// A part of an image.
