@@ -58,12 +58,7 @@ Result<std::uint64_t> read_field(const json& object, const Bounds& bounds)
 Result<void> check_fields(const json& object)
 {
     constexpr std::array<std::string_view, 6> kKnown{
-        "name",
-        kWidth.field,
-        kHeight.field,
-        kMemory.field,
-        kBudget.field,
-        kTextureLimit.field};
+        "name", kWidth.field, kHeight.field, kMemory.field, kBudget.field, kTextureLimit.field};
     for (const auto& item : object.items())
     {
         if (std::find(kKnown.begin(), kKnown.end(), item.key()) == kKnown.end())

@@ -10,10 +10,11 @@ namespace vsplit::client {
 /// What a device with little memory will show of a stream.
 struct MemoryPlan
 {
-    std::uint32_t level = 0;         ///< The finest level that fits.
+    std::uint32_t level = 0;  ///< The finest level that fits.
     /// Memory that decoder, arrays, GPU copies and textures then take.
     std::uint64_t needed_bytes = 0;
-    std::uint32_t texture_limit = 0;  ///< Longest side of a texture that fits, pixels; 0: no textures.
+    std::uint32_t texture_limit =
+        0;  ///< Longest side of a texture that fits, pixels; 0: no textures.
     std::uint64_t texture_bytes = 0;  ///< Part of needed_bytes that textures take.
 };
 
@@ -23,8 +24,9 @@ struct MemoryUse
     std::uint64_t cap_bytes = 0;    ///< Memory that the device has for the model.
     std::uint64_t queue_bytes = 0;  ///< Received bytes that wait.
     bool wireframe = false;         ///< Lines are drawn too.
-    bool surface = false;            ///< Levels are drawn with attributes.
-    std::uint32_t texture_limit = 0;  ///< Longest side of a texture that is wanted, pixels; 0: none.
+    bool surface = false;           ///< Levels are drawn with attributes.
+    std::uint32_t texture_limit =
+        0;  ///< Longest side of a texture that is wanted, pixels; 0: none.
 };
 
 /// Returns the memory that the textures of a stream take with a limit on their sides: decoded with

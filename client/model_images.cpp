@@ -2,16 +2,14 @@
 
 #include "gl_textures.h"
 #include "image/texture_layout.h"
-#include "scene/appearance_coder.h"
+#include "scene/appearance_chunk.h"
 
 #include <algorithm>
 #include <utility>
 
 namespace vsplit::client {
 
-Result<void> ModelImages::take(
-    const codec::ChunkInfo& chunk, std::span<const std::byte> contents
-)
+Result<void> ModelImages::take(const codec::ChunkInfo& chunk, std::span<const std::byte> contents)
 {
     Result<void> taken;
     if (chunk.kind == proto::ChunkKind::Appearance)
@@ -27,7 +25,7 @@ Result<void> ModelImages::take(
 
 Result<void> ModelImages::take_appearance(std::span<const std::byte> contents)
 {
-    auto appearance = decode_appearance(contents);
+    auto appearance = scene::decode_appearance(contents);
     VSPLIT_TRY(appearance);
     if (appearance_)
     {

@@ -125,7 +125,7 @@ Result<void> Presenter::draw_frame()
     last_frame_ = Clock::now() - (next_frame_ - options_.device.frame_budget);
     // The picture of a level shows the textures that came before the next one.
     return row.images > images_before && refiner_->at_level() ? display_->save_picture(row.level)
-                                                             : Result<void>{};
+                                                              : Result<void>{};
 }
 
 Result<void> Presenter::sharpen()

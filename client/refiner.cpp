@@ -51,9 +51,7 @@ bool has_surface(const codec::StreamInfo& info)
            });
 }
 
-Refiner::Refiner(
-    const codec::StreamInfo& info, const codec::DecodeLimits& limits, bool attributes
-)
+Refiner::Refiner(const codec::StreamInfo& info, const codec::DecodeLimits& limits, bool attributes)
     : decoder_(limits),
       buffers_(info.diagonal()),
       positions_([this](std::uint32_t first, std::uint32_t count, std::span<float> out) {

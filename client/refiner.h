@@ -36,9 +36,10 @@ struct ChunkBytes
 /// What Refiner::advance() did.
 struct Progress
 {
-    bool changed = false;         ///< The mesh is finer than before.
-    bool level_complete = false;  ///< A level was reached with its attributes; advance() stops there.
-    ChunkBytes bytes;             ///< Of the chunks that were applied or looked at.
+    bool changed = false;  ///< The mesh is finer than before.
+    bool level_complete =
+        false;         ///< A level was reached with its attributes; advance() stops there.
+    ChunkBytes bytes;  ///< Of the chunks that were applied or looked at.
     std::chrono::duration<double> decoding{};  ///< Time for decoding and updating the arrays.
 };
 

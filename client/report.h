@@ -28,10 +28,10 @@ struct LevelRow
     std::uint32_t faces = 0;
     ChunkBytes bytes;                    ///< Of its chunks.
     std::uint64_t cumulative_bytes = 0;  ///< Length of the stream prefix that shows it.
-    double seconds = 0.0;              ///< From the start of connecting until it was on the screen.
-    double decode_ms = 0.0;            ///< Decoding its chunks and updating the arrays.
-    std::size_t images = 0;            ///< Images decoded while it was the last complete level.
-    double image_ms = 0.0;             ///< Time for that.
+    double seconds = 0.0;    ///< From the start of connecting until it was on the screen.
+    double decode_ms = 0.0;  ///< Decoding its chunks and updating the arrays.
+    std::size_t images = 0;  ///< Images decoded while it was the last complete level.
+    double image_ms = 0.0;   ///< Time for that.
     /// Textures with mipmaps and the coded images that are kept, after its last frame.
     std::uint64_t texture_memory_bytes = 0;
     std::vector<double> frame_ms;      ///< Every frame drawn while it was the last complete level.
@@ -45,7 +45,7 @@ struct Report
     std::string device;
     std::string link;
     std::uint64_t memory_cap_bytes = 0;
-    std::uint64_t memory_planned_bytes = 0;  ///< See MemoryPlan::needed_bytes.
+    std::uint64_t memory_planned_bytes = 0;   ///< See MemoryPlan::needed_bytes.
     std::uint64_t texture_planned_bytes = 0;  ///< See MemoryPlan::texture_bytes; part of the above.
     std::uint32_t texture_limit = 0;  ///< Longest side of a texture, pixels; 0: no textures.
     bool surface = false;  ///< The stream has attributes or materials, and they are drawn.

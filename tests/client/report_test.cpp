@@ -47,7 +47,7 @@ TEST(Report, HasTheNamesThatProgramsRelyOn)
     row.level = 0;
     row.vertices = 40;
     row.faces = 76;
-    row.chunk_bytes = 300;
+    row.bytes.geometry = 300;
     row.cumulative_bytes = 700;
     row.frame_ms = {10.0, 20.0, 30.0};
     report.levels.push_back(row);
