@@ -1,7 +1,7 @@
 #include "player.h"
 
 #include "memory_plan.h"
-#include "ply_file.h"
+#include "saved_level.h"
 
 #include <algorithm>
 #include <span>
@@ -369,8 +369,7 @@ Result<void> Player::finish()
              << ", after " << decoder.decoded_bytes() << " of " << info_.file_bytes << " bytes\n";
     }
     out_.flush();
-    return options_.save.empty() ? Result<void>{}
-                                 : write_ply(options_.save, codec::extract_mesh(decoder));
+    return options_.save.empty() ? Result<void>{} : save_level(options_.save, *refiner_);
 }
 
 // The server's last words follow the last byte; they belong to the bytes on the wire. After a stop

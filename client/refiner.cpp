@@ -164,7 +164,7 @@ SurfaceArrays Refiner::make_surface(const Appearance* appearance) const
     input.positions = positions;
     input.triangles = triangles;
     input.infos = decoder_.info()->attributes;
-    input.attributes = fitting_ ? decoder_.attributes() : nullptr;
+    input.attributes = level_attributes();
     input.appearance = appearance;
     return make_surface_arrays(input);
 }

@@ -90,6 +90,12 @@ public:
     /// `appearance`: its materials sort the triangles; may be null. Cost: linear in the level.
     [[nodiscard]] SurfaceArrays make_surface(const Appearance* appearance) const;
 
+    /// Attributes of the level that was reached; null when it has none.
+    [[nodiscard]] const codec::LevelAttributes* level_attributes() const
+    {
+        return fitting_ ? decoder_.attributes() : nullptr;
+    }
+
     /// The decoder, for its counts and the final mesh.
     [[nodiscard]] const codec::StreamDecoder& decoder() const { return decoder_; }
 
