@@ -41,8 +41,7 @@ public:
             return tl::unexpected<Error>(*error_);
         }
         const std::size_t taken = std::min(bytes.size(), wanted_bytes());
-        buffer_.resize(filled());
-        spent_ = false;
+        buffer_.resize(std::exchange(spent_, false) ? 0 : buffer_.size());
         buffer_.insert(
             buffer_.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(taken)
         );
@@ -377,8 +376,10 @@ private:
     bool spent_ = false;  ///< buffer_ was decoded; it stays until more bytes come.
 
 public:
-    const ChunkInfo* next_chunk() const;  ///< As StreamDecoder::next_chunk().
-    Step skip();                          ///< As StreamDecoder::skip().
+    /// As StreamDecoder::next_chunk().
+    const ChunkInfo* next_chunk() const;
+    /// As StreamDecoder::skip().
+    Step skip();
 
     /// As StreamDecoder::grid_position().
     std::array<std::int32_t, 3> grid_position(std::uint32_t vertex) const

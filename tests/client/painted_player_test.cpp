@@ -172,6 +172,7 @@ TEST_F(PaintedDisplay, DecodesAndCountsTexturesAsTheySharpen)
     const ChunkBytes sum = sum_of(report);
     EXPECT_GE(sum.textures, painted.appearance_bytes + painted.drawn_bytes);
     EXPECT_EQ(sum.attributes, painted.attribute_bytes);
+    EXPECT_EQ(report.levels.front().bytes.attributes, sum.attributes) << "a level waits for them";
     std::size_t images = 0;
     for (const LevelRow& row : report.levels)
     {
