@@ -44,6 +44,10 @@ struct Step
     /// True when the attributes of the level being shown are complete with this chunk; see
     /// StreamDecoder::attributes().
     bool attributes_complete = false;
+    const ChunkInfo* chunk = nullptr;  ///< The chunk that was applied or passed over, of info().
+    /// What an optional chunk holds, checked against its checksum; valid until the next feed(),
+    /// step() or skip(). Empty for others, and for a chunk that skip() passed over.
+    std::span<const std::byte> contents;
 };
 
 /// Turns the bytes of a stream, as they come, into a mesh that gets finer. Vertices are appended and
@@ -71,6 +75,13 @@ public:
     /// Does the next piece of work: the header, or one chunk.
     /// Errors: those of parse_stream_info; BadChecksum, BadChunk, LimitExceeded with the chunk's offset.
     [[nodiscard]] Result<Step> step();
+
+    /// The chunk that step() will decode next; nullptr before the header and after the last chunk.
+    [[nodiscard]] const ChunkInfo* next_chunk() const;
+
+    /// Passes over the next chunk, whose bytes are left out of what is fed.
+    /// Precondition: next_chunk() is of an optional kind and nothing of it was fed.
+    Step skip();
 
     /// Header and index; nullptr before the header was decoded.
     [[nodiscard]] const StreamInfo* info() const;

@@ -7,6 +7,7 @@
 #include "codec/batch_coder.h"
 #include "codec/entropy_coder.h"
 #include "codec/growth_coder.h"
+#include "codec/index_reader.h"
 #include "codec/split_updates.h"
 #include "codec/stitch_coder.h"
 #include "codec/stream_decoder.h"
@@ -30,7 +31,7 @@ public:
     std::size_t wanted_bytes() const
     {
         const std::size_t needed = unit_bytes();
-        return error_ || needed < buffer_.size() ? 0 : needed - buffer_.size();
+        return error_ || needed < filled() ? 0 : needed - filled();
     }
 
     /// As StreamDecoder::feed().
@@ -41,6 +42,7 @@ public:
             return tl::unexpected<Error>(*error_);
         }
         const std::size_t taken = std::min(bytes.size(), wanted_bytes());
+        buffer_.resize(std::exchange(spent_, false) ? 0 : buffer_.size());
         buffer_.insert(
             buffer_.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(taken)
         );
@@ -59,7 +61,7 @@ public:
         {
             return current(StepKind::Complete);
         }
-        if (buffer_.size() < unit_bytes())
+        if (filled() < unit_bytes())
         {
             return current(StepKind::NeedBytes);
         }
@@ -134,7 +136,7 @@ private:
         {
             return complete() ? 0 : info_->chunks[next_].bytes;
         }
-        if (buffer_.size() < header_probe_bytes())
+        if (filled() < header_probe_bytes())
         {
             return header_probe_bytes();
         }
@@ -160,8 +162,10 @@ private:
     void consume_unit()
     {
         decoded_ += buffer_.size();
-        buffer_.clear();
+        spent_ = true;
     }
+
+    std::size_t filled() const { return spent_ ? 0 : buffer_.size(); }
 
     Result<Step> decode_header()
     {
@@ -197,6 +201,8 @@ private:
         VSPLIT_TRY(contents);
         Step step = current(StepKind::SkippedChunk);
         step.chunk_bytes = chunk.bytes;
+        step.chunk = &chunk;
+        step.contents = is_optional(chunk.kind) ? *contents : std::span<const std::byte>{};
         updates_.show({});
         const auto done = decode_contents(chunk, *contents, step);
         if (!done)
@@ -447,8 +453,14 @@ private:
     std::size_t next_ = 0;
     std::unique_ptr<AttributeCoder> attributes_;  ///< Once its first chunk came.
     std::uint64_t attributed_level_ = 0;          ///< One more than the level that they belong to.
+    bool spent_ = false;  ///< buffer_ was decoded; it stays until more bytes come.
 
 public:
+    /// As StreamDecoder::next_chunk().
+    const ChunkInfo* next_chunk() const;
+    /// As StreamDecoder::skip().
+    Step skip();
+
     /// As StreamDecoder::grid_position().
     std::array<std::int32_t, 3> grid_position(std::uint32_t vertex) const
     {
