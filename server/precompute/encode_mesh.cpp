@@ -82,10 +82,7 @@ Sequence make_sequence(
         options.metric, source.exact, working, std::move(source.weights), source.importance
     );
     const AttributeCost attributes(
-        working,
-        source.exact,
-        {.attributes = source.attributes, .values = source.values},
-        options.attribute_weight
+        working, source.exact, {source.attributes, source.values}, options.attribute_weight
     );
     cost.count_attributes(attributes);
     LevelBuilder builder(working, cost, source.exact, {}, options.threads);
