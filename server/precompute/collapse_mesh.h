@@ -109,6 +109,12 @@ public:
         return wedges_[static_cast<std::size_t>(c >> 2)][static_cast<std::size_t>(c & 3)];
     }
 
+    /// Wedge in which a wedge of the ring's centre goes on when that folds into neighbour number `kept`.
+    /// Preconditions: has_wedges(), keeps_seams().
+    [[nodiscard]] std::uint32_t next_wedge(
+        const OneRing& ring, std::size_t kept, std::uint32_t wedge
+    ) const;
+
     /// Tells what a collapse will take away. Preconditions: has_wedges(), can_collapse().
     [[nodiscard]] codec::SeamRecord seam_record(const OneRing& ring, std::size_t kept) const;
 

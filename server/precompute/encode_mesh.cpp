@@ -81,6 +81,10 @@ Sequence make_sequence(
     CollapseCost cost(
         options.metric, source.exact, working, std::move(source.weights), source.importance
     );
+    const AttributeCost attributes(
+        working, source.exact, {source.attributes, source.values}, options.attribute_weight
+    );
+    cost.count_attributes(attributes);
     LevelBuilder builder(working, cost, source.exact, {}, options.threads);
     builder.fold_together(source.stitches);
     const std::size_t base = next_stop(options, 0, vertex_count);
