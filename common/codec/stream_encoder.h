@@ -38,6 +38,9 @@ struct PlannedLevel
     /// Batches of collapses, coarsest first; within a batch the faces of their stars are disjoint. One
     /// batch, or up to kMaxBatches small ones that share a chunk. Empty for the base.
     std::vector<std::vector<Collapse>> batches;
+    /// Instead of batches: components that show from this level on, in vertices of the plan's mesh; one
+    /// group a chunk, within the limits of encode_small_base(). The shift is that of the level before.
+    std::vector<std::vector<Triangle>> parts;
     int shift = 0;  ///< Precision of the level; never grows from level to level.
     /// From this level on, as long as the shift stays the same. Only where the shift changes, and of
     /// vertices that the level has.

@@ -27,6 +27,8 @@ const char* kind_name(proto::ChunkKind kind)
             return "batch";
         case proto::ChunkKind::Growth:
             return "growth";
+        case proto::ChunkKind::Parts:
+            return "parts";
         case proto::ChunkKind::Stitch:
             return "stitch";
     }
