@@ -10,6 +10,7 @@
 #include "precompute/level_errors.h"
 #include "precompute/level_schedule.h"
 #include "precompute/mesh_order.h"
+#include "precompute/part_schedule.h"
 #include "precompute/validate.h"
 
 #include <algorithm>
@@ -53,8 +54,8 @@ struct Source
 /// The collapse sequence.
 struct Sequence
 {
-    std::vector<LevelBatches> levels;
-    std::vector<std::uint8_t> starts;  ///< By batch 1 when it may not join the level before it.
+    std::vector<LevelStep> levels;
+    std::vector<std::uint8_t> starts;  ///< By step 1 when it may not join the level before it.
     std::vector<Triangle> base;        ///< The triangles that it leaves.
 };
 
@@ -73,14 +74,24 @@ std::vector<std::uint8_t> lock_copies(std::span<const std::uint32_t> stitches)
     return locked;
 }
 
-/// Called with every batch as soon as it is known.
-using BatchSink = std::function<void(const std::vector<codec::Collapse>&)>;
+/// Called with every step as soon as it is known.
+using StepSink = std::function<void(const LevelStep&)>;
+
+/// Vertices at which the collapses from a mesh of `vertices` out of `all` stop next.
+std::size_t next_goal(
+    const EncodeOptions& options, const PartSchedule& parts, std::size_t vertices, std::size_t all
+)
+{
+    const std::size_t stop = next_stop(options, vertices, all);
+    return options.base_vertices != 0 ? stop : parts.base_goal(stop);
+}
 
 Sequence make_sequence(
     Source& source,
     const EncodeOptions& options,
     const ProgressSink& progress,
-    const BatchSink& take_batch
+    PartSchedule& parts,
+    const StepSink& take_step
 )
 {
     const auto vertex_count = static_cast<std::uint32_t>(source.exact.size());
@@ -89,13 +100,18 @@ Sequence make_sequence(
         options.metric, source.exact, working, std::move(source.weights), source.importance
     );
     LevelBuilder builder(working, cost, source.exact, source.locked, options.threads);
-    const std::size_t base = next_stop(options, 0, vertex_count);
+    const std::size_t base = next_goal(options, parts, 0, vertex_count);
     Sequence sequence;
+    const auto add_step = [&](LevelStep step, bool starts) {
+        take_step(step);
+        sequence.levels.push_back(std::move(step));
+        sequence.starts.push_back(starts ? 1 : 0);
+    };
     bool choosy = true;
     while (builder.vertex_count() > base)
     {
         const std::size_t before = builder.vertex_count();
-        const std::size_t stop = next_stop(options, before, vertex_count);
+        const std::size_t stop = next_goal(options, parts, before, vertex_count);
         LevelStyle style = style_for(options.metric, before, vertex_count);
         style.cheapest_share = choosy ? style.cheapest_share : 1.0;
         auto level = builder.next_level(style, before - stop);
@@ -105,15 +121,20 @@ Sequence make_sequence(
         const bool slow = !arrived && static_cast<double>(level.size()) < least;
         if (!level.empty())
         {
-            take_batch(level);
-            sequence.levels.push_back({std::move(level)});
-            sequence.starts.push_back(arrived ? 1 : 0);
+            add_step({{std::move(level)}, {}}, arrived);
         }
         if (progress)
         {
             progress("collapse", 1.0 - static_cast<double>(builder.vertex_count()) / vertex_count);
         }
-        if (slow && !choosy)
+        auto removed = parts.take(working, builder.vertex_count(), base, slow);
+        if (!removed.empty())
+        {
+            builder.forget_removed();
+            add_step({{}, std::move(removed)}, true);
+            continue;
+        }
+        if (slow && (!choosy || parts.is_base(builder.vertex_count())))
         {
             break;
         }
@@ -128,19 +149,25 @@ Sequence make_sequence(
 /// its own chunk.
 void order_levels(Sequence& sequence)
 {
-    std::vector<LevelBatches> joined;
+    std::vector<LevelStep> joined;
     std::size_t splits = kSmallestLevel;
     for (std::size_t i = sequence.levels.size(); i-- > 0;)
     {
-        auto& batch = sequence.levels[i].front();
+        if (!sequence.levels[i].parts.empty())
+        {
+            splits = kSmallestLevel;
+            joined.push_back(std::move(sequence.levels[i]));
+            continue;
+        }
+        auto& batch = sequence.levels[i].batches.front();
         if (splits + batch.size() > kSmallestLevel || sequence.starts[i] != 0 ||
-            joined.back().size() == codec::kMaxBatches)
+            joined.back().batches.size() == codec::kMaxBatches)
         {
             splits = 0;
             joined.emplace_back();
         }
         splits += batch.size();
-        joined.back().push_back(std::move(batch));
+        joined.back().batches.push_back(std::move(batch));
     }
     sequence.levels = std::move(joined);
 }
@@ -159,7 +186,8 @@ codec::StreamPlan make_plan(
         codec::PlannedLevel planned;
         if (level > 0)
         {
-            planned.batches = sequence.levels[level - 1];  // the meter still reads them
+            planned.batches = sequence.levels[level - 1].batches;  // the meter still reads them
+            planned.parts = sequence.levels[level - 1].parts;
         }
         planned.shift = views[level].shift;
         planned.displaced = views[level].displaced;
@@ -277,18 +305,25 @@ Result<EncodedMesh> encode_source(
     EncodedMesh result;
     result.seconds.metric = lap(start);
 
+    PartSchedule parts(
+        source.exact, source.quantised.triangles, source.stitches, source.importance
+    );
+    if (!options.level_vertices.empty())
+    {
+        parts.keep_all();  // or levels would not have the vertices that are asked for
+    }
     ConcurrentMeter meter(
         {.exact = source.exact,
          .mesh = &source.quantised,
          .locked = source.locked,
-         .bits = options.position_bits},
+         .bits = options.position_bits,
+         .components = parts.components()},
         source.importance,
         options.threads
     );
-    Sequence sequence = make_sequence(source, options, progress, [&](const auto& batch) {
-        meter.take(
-            batch, batch.size() > kSmallestLevel
-        );  // others may be joined, see order_levels()
+    Sequence sequence = make_sequence(source, options, progress, parts, [&](const LevelStep& step) {
+        // Small batches may be joined, see order_levels().
+        meter.take(step, !step.parts.empty() || step.batches.front().size() > kSmallestLevel);
     });
     result.seconds.collapse = lap(start);
 

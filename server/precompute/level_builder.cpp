@@ -301,6 +301,11 @@ codec::Collapse describe_collapse(std::uint32_t removed, const OneRing& ring, st
     return collapse;
 }
 
+void LevelBuilder::forget_removed()
+{
+    std::erase_if(alive_, [this](std::uint32_t v) { return mesh_.is_removed(v); });
+}
+
 std::vector<codec::Collapse> LevelBuilder::next_level(const LevelStyle& style, std::size_t most)
 {
     collect(style);
@@ -320,7 +325,7 @@ std::vector<codec::Collapse> LevelBuilder::next_level(const LevelStyle& style, s
             try_vertex(vertex, style, done);
         }
     }
-    std::erase_if(alive_, [this](std::uint32_t v) { return mesh_.is_removed(v); });
+    forget_removed();
     // Whoever carries them out again walks through memory in order.
     const auto costliest =
         done.end() - static_cast<std::ptrdiff_t>(std::min(kCostliest, done.size()));

@@ -55,6 +55,9 @@ public:
         const LevelStyle& style, std::size_t most
     );
 
+    /// Takes note that components were taken out of the mesh.
+    void forget_removed();
+
     /// Vertices left.
     [[nodiscard]] std::size_t vertex_count() const { return alive_.size(); }
 
