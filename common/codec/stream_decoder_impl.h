@@ -11,10 +11,10 @@
 #include "codec/split_updates.h"
 #include "codec/stitch_coder.h"
 #include "codec/stream_decoder.h"
+#include "codec/take_memory.h"
 #include "core/assert.h"
 
 #include <algorithm>
-#include <new>
 #include <optional>
 #include <utility>
 
@@ -179,21 +179,6 @@ private:
         return current(StepKind::Header);
     }
 
-    /// Runs what allocates within the limits: they may allow more than there is.
-    template <typename Allocate>
-    static Result<void> take_memory(const Allocate& allocate)
-    {
-        try
-        {
-            allocate();
-        }
-        catch (const std::bad_alloc&)
-        {
-            return fail(ErrorCode::LimitExceeded, "there is not enough memory for the mesh");
-        }
-        return {};
-    }
-
     Result<Step> decode_chunk()
     {
         const ChunkInfo& chunk = info_->chunks[next_];
@@ -255,6 +240,8 @@ private:
         {
             case proto::ChunkKind::Base:
                 return decode_base(chunk, bytes, step);
+            case proto::ChunkKind::Parts:
+                return decode_parts(chunk, bytes);
             case proto::ChunkKind::Growth:
                 return decode_growth(chunk, bytes, step);
             default:
@@ -360,6 +347,23 @@ private:
         updates_.show_all();
         step.first_new_vertex = 0;
         step.first_moved_vertex = 0;
+        return {};
+    }
+
+    /// Adds components to a complete level; the index lets none come elsewhere.
+    Result<void> decode_parts(const ChunkInfo& chunk, std::span<const std::byte> bytes)
+    {
+        const std::uint32_t faces = state_.mesh.face_count();
+        const auto parts = decode_parts_chunk(
+            *info_,
+            bytes,
+            chunk.vertices - state_.mesh.vertex_count(),
+            chunk.faces - faces,
+            state_.shift
+        );
+        VSPLIT_TRY(parts);
+        VSPLIT_TRY(state_.mesh.add_parts(*parts, state_.max_index()));
+        updates_.show_from(faces);
         return {};
     }
 

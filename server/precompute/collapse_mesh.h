@@ -117,6 +117,8 @@ public:
 
     /// Tells what a collapse will take away. Preconditions: has_wedges(), can_collapse().
     [[nodiscard]] codec::SeamRecord seam_record(const OneRing& ring, std::size_t kept) const;
+    /// Takes out whole components. `parts`: all of their triangles that are left.
+    void remove_parts(std::span<const Triangle> parts);
 
     /// True for vertices on the boundary.
     [[nodiscard]] bool is_boundary(std::uint32_t vertex) const
@@ -124,7 +126,7 @@ public:
         return links_[vertex].boundary != 0;
     }
 
-    /// True for vertices that a collapse folded away.
+    /// True for vertices that a collapse folded away or that left with their component.
     [[nodiscard]] bool is_removed(std::uint32_t vertex) const { return links_[vertex].corner < 0; }
 
     /// Neighbours of a vertex.
@@ -183,7 +185,7 @@ public:
         return across < 0 ? -1 : next(across);
     }
 
-    /// True for faces that no collapse has dropped.
+    /// True for faces that no collapse has dropped and whose component is there.
     [[nodiscard]] bool has_face(std::uint32_t face) const { return faces_[face].vertex[0] >= 0; }
 
     /// Vertices of a face. Precondition: has_face().

@@ -357,6 +357,11 @@ void LevelBuilder::put_in_order(std::vector<codec::Collapse>& done)
     std::ranges::sort(first, costliest, {}, &codec::Collapse::removed);
 }
 
+void LevelBuilder::forget_removed()
+{
+    std::erase_if(alive_, [this](std::uint32_t v) { return mesh_.is_removed(v); });
+}
+
 std::vector<codec::Collapse> LevelBuilder::next_level(const LevelStyle& style, std::size_t most)
 {
     copies_.forget_removed(mesh_);
@@ -379,7 +384,7 @@ std::vector<codec::Collapse> LevelBuilder::next_level(const LevelStyle& style, s
                                        : try_copies(vertex, style, done);
         }
     }
-    std::erase_if(alive_, [this](std::uint32_t v) { return mesh_.is_removed(v); });
+    forget_removed();
     put_in_order(done);
     return done;
 }

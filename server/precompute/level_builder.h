@@ -64,6 +64,9 @@ public:
     /// What the collapses of the last next_level() took away, in its order; empty without wedges.
     [[nodiscard]] std::vector<codec::SeamRecord> take_seams() { return std::move(seams_); }
 
+    /// Takes note that components were taken out of the mesh.
+    void forget_removed();
+
     /// Vertices left.
     [[nodiscard]] std::size_t vertex_count() const { return alive_.size(); }
 

@@ -135,6 +135,7 @@ TEST(StreamFormatDocument, NamesEveryChunkKindWithItsNumber)
         {"Base", static_cast<unsigned long>(proto::ChunkKind::Base)},
         {"Batch", static_cast<unsigned long>(proto::ChunkKind::Batch)},
         {"Growth", static_cast<unsigned long>(proto::ChunkKind::Growth)},
+        {"Parts", static_cast<unsigned long>(proto::ChunkKind::Parts)},
         {"Stitch", static_cast<unsigned long>(proto::ChunkKind::Stitch)},
     };
     const std::string row = R"(\| (\d+) \| `(\w+)` \| (?:yes|no) \|)";
