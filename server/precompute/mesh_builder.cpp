@@ -52,19 +52,9 @@ Result<void> MeshBuilder::add_vertex(const std::array<double, 3>& point)
 
 Result<void> MeshBuilder::add_polygon(std::span<const std::int64_t> corners)
 {
-    if (corners.empty())
-    {
-        return {};
-    }
-    if (corners.size() < 3)
-    {
-        return add_triangle(corners.front(), corners.back(), corners.back());
-    }
-    for (std::size_t i = 2; i < corners.size(); ++i)
-    {
-        VSPLIT_TRY(add_triangle(corners[0], corners[i - 1], corners[i]));
-    }
-    return {};
+    return for_each_fan_triangle(corners.size(), [&](std::size_t i, std::size_t j, std::size_t k) {
+        return add_triangle(corners[i], corners[j], corners[k]);
+    });
 }
 
 Result<void> MeshBuilder::add_strip(std::span<const std::int64_t> corners)

@@ -17,6 +17,23 @@ namespace vsplit::precompute {
 /// Says in words that a vertex is none. `vertex`: its index. Result: a BadCoordinate error.
 [[nodiscard]] tl::unexpected<Error> bad_position(std::size_t vertex);
 
+/// Calls `visit(i, j, k)` for every triangle of the fan that MeshBuilder::add_polygon() makes of a
+/// polygon, the numbers being those of its corners. `corners`: how many it has.
+/// Result: the first error that `visit` returns.
+template <typename Visit>
+[[nodiscard]] Result<void> for_each_fan_triangle(std::size_t corners, Visit visit)
+{
+    if (corners == 1 || corners == 2)
+    {
+        return visit(std::size_t{0}, corners - 1, corners - 1);
+    }
+    for (std::size_t i = 2; i < corners; ++i)
+    {
+        VSPLIT_TRY(visit(std::size_t{0}, i - 1, i));
+    }
+    return {};
+}
+
 /// Collects the vertices and polygons that a mesh reader finds, and refuses what is not a mesh. Not
 /// thread safe. Safe on untrusted input.
 class MeshBuilder
@@ -40,6 +57,9 @@ public:
 
     /// Vertices so far.
     [[nodiscard]] std::size_t vertex_count() const { return mesh_.positions.size(); }
+
+    /// Triangles so far.
+    [[nodiscard]] std::size_t triangle_count() const { return mesh_.triangles.size(); }
 
     /// Takes the mesh. Errors: BadIndex when a triangle refers to a vertex that never came, NotAMesh
     /// when there is no vertex, EmptyMesh when there is no triangle. Leaves the builder empty.

@@ -2,6 +2,7 @@
 
 #include "core/file_io.h"
 #include "precompute/mesh_readers.h"
+#include "precompute/surface_io.h"
 #include "precompute/text_scan.h"
 
 #include <algorithm>
@@ -9,13 +10,12 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <utility>
 
 namespace vsplit::precompute {
 namespace {
 
-Result<IndexedMesh> read_text(
-    std::span<const std::byte> bytes, Result<IndexedMesh> (*reader)(std::string_view)
-)
+Result<std::string_view> as_text(std::span<const std::byte> bytes)
 {
     if (std::find(bytes.begin(), bytes.end(), std::byte{0}) != bytes.end())
     {
@@ -24,19 +24,12 @@ Result<IndexedMesh> read_text(
     std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
     text.remove_prefix(text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0);
-    return reader(text);
+    return text;
 }
 
-Result<IndexedMesh> parse(const std::string& extension, std::span<const std::byte> bytes)
+/// Reads the formats that hold nothing but geometry for us.
+Result<IndexedMesh> parse_bare(const std::string& extension, std::span<const std::byte> bytes)
 {
-    if (bytes.empty())
-    {
-        return fail(ErrorCode::NotAMesh, "the file is empty");
-    }
-    if (extension == ".ply")
-    {
-        return read_ply(bytes);
-    }
     if (extension == ".stl")
     {
         return read_stl(bytes);
@@ -45,7 +38,33 @@ Result<IndexedMesh> parse(const std::string& extension, std::span<const std::byt
     {
         return read_om(bytes);
     }
-    return read_text(bytes, extension == ".off" ? read_off : read_obj);
+    return as_text(bytes).and_then(read_off);
+}
+
+/// `read`: gives companions; empty when only the mesh is wanted.
+Result<SourceModel> parse(
+    const std::string& extension, std::span<const std::byte> bytes, const ReadCompanion& read
+)
+{
+    if (bytes.empty())
+    {
+        return fail(ErrorCode::NotAMesh, "the file is empty");
+    }
+    if (extension == ".ply")
+    {
+        return read_ply_model(bytes, read);
+    }
+    if (extension == ".obj")
+    {
+        return as_text(bytes).and_then([&](std::string_view text) {
+            return read_obj_model(text, read);
+        });
+    }
+    return parse_bare(extension, bytes).map([](IndexedMesh mesh) {
+        SourceModel model;
+        model.surface.mesh = std::move(mesh);
+        return model;
+    });
 }
 
 bool is_readable(const std::string& extension)
@@ -54,9 +73,7 @@ bool is_readable(const std::string& extension)
     return std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
 }
 
-}  // namespace
-
-Result<IndexedMesh> read_mesh(const std::filesystem::path& path)
+Result<SourceModel> read_model(const std::filesystem::path& path, const ReadCompanion& read)
 {
     const std::string extension = lower_case(path.extension().string());
     const std::string start = "cannot read " + path.string() + ": ";
@@ -75,7 +92,7 @@ Result<IndexedMesh> read_mesh(const std::filesystem::path& path)
         {
             return tl::unexpected<Error>(bytes.error());
         }
-        return parse(extension, *bytes).map_error([&](const Error& error) {
+        return parse(extension, *bytes, read).map_error([&](const Error& error) {
             return Error{error.code, start + error.message, error.offset};
         });
     }
@@ -87,6 +104,20 @@ Result<IndexedMesh> read_mesh(const std::filesystem::path& path)
     {
         return fail(ErrorCode::IoError, start + exception.what());
     }
+}
+
+}  // namespace
+
+Result<IndexedMesh> read_mesh(const std::filesystem::path& path)
+{
+    return read_model(path, nullptr).map([](SourceModel model) {
+        return std::move(model.surface.mesh);
+    });
+}
+
+Result<SourceModel> read_surface(const std::filesystem::path& path)
+{
+    return read_model(path, companions_in(path.parent_path()));
 }
 
 }  // namespace vsplit::precompute

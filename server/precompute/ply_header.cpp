@@ -110,12 +110,34 @@ std::optional<PlyProperty> parse_property(std::string_view rest)
     return property;
 }
 
+/// "comment TextureFile NAME"; names may have blanks.
+void take_texture(std::string_view rest, PlyHeader& header)
+{
+    if (take_token(rest) != "TextureFile")
+    {
+        return;
+    }
+    std::string_view probe = rest;
+    const std::string_view first = take_token(probe);
+    rest.remove_prefix(first.empty() ? rest.size() : first.data() - rest.data());
+    rest = rest.substr(0, rest.find_last_not_of(" \t\r") + 1);
+    if (!rest.empty())
+    {
+        header.textures.emplace_back(rest);
+    }
+}
+
 /// Takes over one header line; false when it makes no sense there.
 bool apply_line(std::string_view line, PlyHeader& header, bool& has_format)
 {
     std::string_view rest = line;
     const std::string_view keyword = take_token(rest);
-    if (keyword.empty() || keyword == "comment" || keyword == "obj_info")
+    if (keyword == "comment")
+    {
+        take_texture(rest, header);
+        return true;
+    }
+    if (keyword.empty() || keyword == "obj_info")
     {
         return true;
     }

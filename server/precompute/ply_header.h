@@ -74,7 +74,8 @@ struct PlyHeader
 {
     PlyFormat format = PlyFormat::Ascii;
     std::vector<PlyElement> elements;
-    std::size_t body_offset = 0;  ///< First byte after the header.
+    std::vector<std::string> textures;  ///< Images that comments name, as MeshLab writes them.
+    std::size_t body_offset = 0;        ///< First byte after the header.
 };
 
 /// Parses the header of a PLY file.

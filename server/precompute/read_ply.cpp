@@ -1,153 +1,52 @@
 // Based on: Turk, "The PLY Polygon File Format", 1994; triangle strips as the Stanford range-image
 // tools write them (element "tristrips", -1 between strips).
+#include "precompute/corner_table.h"
 #include "precompute/mesh_builder.h"
 #include "precompute/mesh_readers.h"
+#include "precompute/ply_columns.h"
 #include "precompute/ply_header.h"
+#include "precompute/ply_values.h"
 #include "precompute/text_scan.h"
 
-#include <bit>
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 namespace vsplit::precompute {
 namespace {
 
-/// Values of a binary body, in file order.
-class BinaryValues
-{
-public:
-    BinaryValues(std::span<const std::byte> bytes, std::size_t offset, bool big_endian)
-        : bytes_(bytes), offset_(offset), big_endian_(big_endian)
-    {
-    }
-
-    [[nodiscard]] std::size_t offset() const { return offset_; }
-
-    [[nodiscard]] std::size_t left() const { return bytes_.size() - offset_; }
-
-    static std::size_t smallest(PlyType type) { return ply_type_bytes(type); }
-
-    bool skip(PlyType type) { return take(ply_type_bytes(type)); }
-
-    std::optional<double> number(PlyType type)
-    {
-        const std::size_t size = ply_type_bytes(type);
-        if (!take(size))
-        {
-            return std::nullopt;
-        }
-        std::uint64_t bits = 0;
-        for (std::size_t i = 0; i < size; ++i)
-        {
-            const std::size_t place = big_endian_ ? size - 1 - i : i;
-            bits |= static_cast<std::uint64_t>(bytes_[offset_ - size + i]) << (8 * place);
-        }
-        return convert(type, bits);
-    }
-
-private:
-    bool take(std::size_t size)
-    {
-        const bool there = size <= left();
-        offset_ += there ? size : 0;
-        return there;
-    }
-
-    static double convert(PlyType type, std::uint64_t bits)
-    {
-        switch (type)
-        {
-            case PlyType::Int8:
-                return static_cast<std::int8_t>(bits);
-            case PlyType::Int16:
-                return static_cast<std::int16_t>(bits);
-            case PlyType::Int32:
-                return static_cast<std::int32_t>(bits);
-            case PlyType::Float32:
-                return std::bit_cast<float>(static_cast<std::uint32_t>(bits));
-            case PlyType::Float64:
-                return std::bit_cast<double>(bits);
-            case PlyType::Uint8:
-            case PlyType::Uint16:
-            case PlyType::Uint32:
-                break;
-        }
-        return static_cast<double>(bits);
-    }
-
-    std::span<const std::byte> bytes_;
-    std::size_t offset_;
-    bool big_endian_;
-};
-
-/// Values of an ascii body, in file order; lines do not matter.
-class AsciiValues
-{
-public:
-    AsciiValues(std::string_view text, std::size_t offset)
-        : rest_(text.substr(offset)), size_(text.size())
-    {
-    }
-
-    [[nodiscard]] std::size_t offset() const { return size_ - rest_.size(); }
-
-    /// One more than the characters left: the last value needs no blank behind it.
-    [[nodiscard]] std::size_t left() const { return rest_.size() + 1; }
-
-    /// A digit and a blank.
-    static std::size_t smallest(PlyType /*type*/) { return 2; }
-
-    bool skip(PlyType /*type*/) { return !take_token(rest_).empty(); }
-
-    std::optional<double> number(PlyType /*type*/) { return parse_real(take_token(rest_)); }
-
-private:
-    std::string_view rest_;
-    std::size_t size_;
-};
-
-/// What a reader does with a property.
+/// What a reader does with a property of a face.
 enum class Use : std::uint8_t
 {
     Skip,
-    X,
-    Y,
-    Z,
     Corners,
+    TexCoords,  ///< Of every corner, u and v in turn.
 };
-
-Use vertex_use(const PlyProperty& property)
-{
-    if (property.count_type || property.name.size() != 1)
-    {
-        return Use::Skip;
-    }
-    switch (property.name.front())
-    {
-        case 'x':
-            return Use::X;
-        case 'y':
-            return Use::Y;
-        case 'z':
-            return Use::Z;
-        default:
-            return Use::Skip;
-    }
-}
 
 Use face_use(const PlyProperty& property)
 {
-    const bool named = property.name == "vertex_indices" || property.name == "vertex_index";
-    return named && property.count_type ? Use::Corners : Use::Skip;
+    if (!property.count_type)
+    {
+        return Use::Skip;
+    }
+    if (property.name == "vertex_indices" || property.name == "vertex_index")
+    {
+        return Use::Corners;
+    }
+    return property.name == "texcoord" ? Use::TexCoords : Use::Skip;
 }
 
 template <typename Values>
 class BodyReader
 {
 public:
-    BodyReader(Values values, const PlyHeader& header) : values_(values), header_(header) {}
+    BodyReader(Values values, const PlyHeader& header, DroppedNotes& dropped)
+        : values_(values), header_(header), dropped_(dropped)
+    {
+    }
 
-    Result<IndexedMesh> read()
+    Result<Surface> read()
     {
         VSPLIT_TRY(check_claims());
         for (const PlyElement& element : header_.elements)
@@ -161,7 +60,7 @@ public:
                 VSPLIT_TRY(read_faces(element));
             }
         }
-        return builder_.finish();
+        return finish();
     }
 
 private:
@@ -199,25 +98,25 @@ private:
 
     Result<void> read_vertices(const PlyElement& element)
     {
-        std::vector<Use> uses;
-        unsigned axes = 0;
-        for (const PlyProperty& property : element.properties)
-        {
-            uses.push_back(vertex_use(property));
-            axes |= 1U << static_cast<unsigned>(uses.back());
-        }
-        constexpr unsigned kAllAxes = 0b1110;
-        if ((axes & kAllAxes) != kAllAxes)
+        const PlyVertexPlan plan = plan_ply_vertices(element, dropped_);
+        if (!plan.has_position)
         {
             return fail(ErrorCode::NotAMesh, "the vertices of the PLY file have no x, y and z");
         }
-        builder_.reserve(static_cast<std::size_t>(element.count), 0);
-        for (std::uint64_t row = 0; row < element.count; ++row)
+        attributes_ = plan.attributes;
+        const auto rows = static_cast<std::size_t>(element.count);
+        builder_.reserve(rows, 0);
+        for (SurfaceAttribute& attribute : attributes_)
+        {
+            attribute.values.assign(rows * attribute.components, 0.0F);
+        }
+        for (std::size_t row = 0; row < rows; ++row)
         {
             std::array<double, 3> point{};
-            for (std::size_t i = 0; i < uses.size(); ++i)
+            for (std::size_t i = 0; i < plan.columns.size(); ++i)
             {
-                VSPLIT_TRY(read_vertex_value(element.properties[i], uses[i], point));
+                const PlyProperty& property = element.properties[i];
+                VSPLIT_TRY(read_vertex_value(property, plan.columns[i], row, point));
             }
             VSPLIT_TRY(builder_.add_vertex(point));
         }
@@ -225,10 +124,13 @@ private:
     }
 
     Result<void> read_vertex_value(
-        const PlyProperty& property, Use use, std::array<double, 3>& point
+        const PlyProperty& property,
+        const PlyColumn& column,
+        std::size_t row,
+        std::array<double, 3>& point
     )
     {
-        if (use == Use::Skip)
+        if (column.target == PlyColumn::Target::Skip)
         {
             return skip(property);
         }
@@ -237,7 +139,14 @@ private:
         {
             return broken();
         }
-        point[static_cast<std::size_t>(use) - static_cast<std::size_t>(Use::X)] = *value;
+        if (column.target == PlyColumn::Target::Position)
+        {
+            point[column.component] = *value;
+            return {};
+        }
+        SurfaceAttribute& attribute = attributes_[column.attribute];
+        attribute.values[row * attribute.components + column.component] =
+            to_float(*value * column.scale + column.offset);
         return {};
     }
 
@@ -251,18 +160,43 @@ private:
         const bool strips = element.name == "tristrips";
         const bool used = strips || element.name == "face";
         builder_.reserve(0, used && !strips ? static_cast<std::size_t>(element.count) : 0);
+        note_unused(element, used);
         for (std::uint64_t row = 0; row < element.count; ++row)
         {
+            corners_.clear();
+            coordinates_.clear();
             for (const PlyProperty& property : element.properties)
             {
                 const Use use = used ? face_use(property) : Use::Skip;
-                VSPLIT_TRY(use == Use::Skip ? skip(property) : read_corners(property, strips));
+                VSPLIT_TRY(
+                    use == Use::Corners     ? read_corners(property)
+                    : use == Use::TexCoords ? read_coordinates(property)
+                                            : skip(property)
+                );
             }
+            first_triangle_ = builder_.triangle_count();
+            VSPLIT_TRY(strips ? builder_.add_strip(corners_) : builder_.add_polygon(corners_));
+            add_wedges(strips);
         }
         return {};
     }
 
-    Result<void> read_corners(const PlyProperty& property, bool strip)
+    void note_unused(const PlyElement& element, bool used)
+    {
+        if (!used && element.count > 0)
+        {
+            dropped_.add("element '" + element.name + "'");
+        }
+        for (const PlyProperty& property : element.properties)
+        {
+            if (used && face_use(property) == Use::Skip)
+            {
+                dropped_.add("face property '" + property.name + "'");
+            }
+        }
+    }
+
+    Result<void> read_corners(const PlyProperty& property)
     {
         const auto count = list_length(property);
         if (!count)
@@ -280,7 +214,75 @@ private:
             }
             corners_.push_back(static_cast<std::int64_t>(*value));
         }
-        return strip ? builder_.add_strip(corners_) : builder_.add_polygon(corners_);
+        return {};
+    }
+
+    Result<void> read_coordinates(const PlyProperty& property)
+    {
+        const auto count = list_length(property);
+        if (!count)
+        {
+            return tl::unexpected<Error>(count.error());
+        }
+        coordinates_.clear();
+        for (std::size_t i = 0; i < *count; ++i)
+        {
+            const auto value = values_.number(property.type);
+            if (!value)
+            {
+                return broken();
+            }
+            coordinates_.push_back(to_float(i % 2 == 0 ? *value : 1.0 - *value));
+        }
+        return {};
+    }
+
+    /// Gives the triangles of a face the texture coordinates of its corners, if it has them.
+    void add_wedges(bool strips)
+    {
+        if (strips || coordinates_.empty() || coordinates_.size() != 2 * corners_.size())
+        {
+            return;
+        }
+        wedge_corners_.clear();
+        for (std::size_t i = 0; i < coordinates_.size(); i += 2)
+        {
+            wedge_corners_.push_back(wedges_.add_value(std::span(coordinates_).subspan(i, 2)));
+        }
+        wedges_.pad(first_triangle_);
+        wedges_.add_polygon(wedge_corners_);
+    }
+
+    Result<Surface> finish()
+    {
+        const std::size_t vertices = builder_.vertex_count();
+        auto mesh = builder_.finish();
+        if (!mesh)
+        {
+            return tl::unexpected<Error>(mesh.error());
+        }
+        Surface surface;
+        for (SurfaceAttribute& attribute : attributes_)
+        {
+            // They differ only when the file has several tables of vertices.
+            if (attribute.size() == vertices)
+            {
+                attribute.corners = mesh->triangles;
+                surface.attributes.push_back(std::move(attribute));
+            }
+        }
+        if (wedges_.used())
+        {
+            std::erase_if(surface.attributes, [](const SurfaceAttribute& attribute) {
+                return attribute.kind == AttributeKind::TexCoord;
+            });
+            std::size_t bad = 0;
+            surface.attributes.push_back(
+                wedges_.finish(mesh->triangles.size(), std::array{0.0F, 0.0F}, bad)
+            );
+        }
+        surface.mesh = std::move(*mesh);
+        return surface;
     }
 
     Result<void> skip(const PlyProperty& property)
@@ -330,13 +332,60 @@ private:
 
     Values values_;
     const PlyHeader& header_;
+    DroppedNotes& dropped_;
     MeshBuilder builder_;
-    std::vector<std::int64_t> corners_;
+    std::vector<SurfaceAttribute> attributes_;        ///< Of the vertices.
+    CornerTable wedges_{AttributeKind::TexCoord, 2};  ///< Of the faces' corners.
+    std::vector<std::int64_t> corners_;               ///< Of the face that is read.
+    std::vector<float> coordinates_;                  ///< Of the face that is read.
+    std::vector<std::int64_t> wedge_corners_;         ///< Of the face that is read.
+    std::size_t first_triangle_ = 0;                  ///< Of the face that is read.
 };
+
+Result<Surface> read_body(
+    std::span<const std::byte> bytes, const PlyHeader& header, DroppedNotes& dropped
+)
+{
+    if (header.format == PlyFormat::Ascii)
+    {
+        const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        return BodyReader(AsciiValues(text, header.body_offset), header, dropped).read();
+    }
+    const bool big_endian = header.format == PlyFormat::BigEndian;
+    return BodyReader(BinaryValues(bytes, header.body_offset, big_endian), header, dropped).read();
+}
+
+/// Gives the model the image that a comment names, when texture coordinates place it.
+void add_texture(
+    const PlyHeader& header, const ReadCompanion& read, SourceModel& model, DroppedNotes& dropped
+)
+{
+    const bool placed = std::ranges::any_of(model.surface.attributes, [](const auto& attribute) {
+        return attribute.kind == AttributeKind::TexCoord;
+    });
+    if (!placed || header.textures.empty() || !read)
+    {
+        return;
+    }
+    if (header.textures.size() > 1)
+    {
+        dropped.add("all textures but the first");
+    }
+    ImageCollector images(read, dropped);
+    Material material;
+    material.metallic = 0.0F;
+    material.base_color_texture.image = images.add_file(header.textures.front());
+    images.finish(model);
+    if (material.base_color_texture.image >= 0)
+    {
+        model.appearance.materials.push_back(std::move(material));
+        model.appearance.groups.push_back({"", 0});
+    }
+}
 
 }  // namespace
 
-Result<IndexedMesh> read_ply(std::span<const std::byte> bytes)
+Result<SourceModel> read_ply_model(std::span<const std::byte> bytes, const ReadCompanion& read)
 {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     const auto header = parse_ply_header(text);
@@ -344,12 +393,18 @@ Result<IndexedMesh> read_ply(std::span<const std::byte> bytes)
     {
         return tl::unexpected<Error>(header.error());
     }
-    if (header->format == PlyFormat::Ascii)
+    DroppedNotes dropped;
+    SourceModel model;
+    auto surface = read_body(bytes, *header, dropped);
+    if (!surface)
     {
-        return BodyReader(AsciiValues(text, header->body_offset), *header).read();
+        return tl::unexpected<Error>(surface.error());
     }
-    const bool big_endian = header->format == PlyFormat::BigEndian;
-    return BodyReader(BinaryValues(bytes, header->body_offset, big_endian), *header).read();
+    model.surface = std::move(*surface);
+    add_texture(*header, read, model, dropped);
+    tidy_attributes(model.surface, dropped);
+    model.dropped = dropped.take();
+    return model;
 }
 
 }  // namespace vsplit::precompute

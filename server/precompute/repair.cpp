@@ -72,14 +72,15 @@ Result<RepairedMesh> repair_mesh(const IndexedMesh& mesh, std::span<const float>
     }
     RepairedMesh result;
     result.importance.assign(importance.begin(), importance.end());
-    result.mesh = weld_and_clean(mesh, result.importance, result.report);
+    weld_and_clean(mesh, result);
     if (result.mesh.triangles.empty())
     {
         return fail(ErrorCode::EmptyMesh, "no triangle is left after repair");
     }
-    const Orientation orientation = orient_faces(result.mesh, result.report);
+    Orientation orientation = orient_faces(result.mesh, result.report);
     result.stitches = split_fans(result.mesh, orientation, result.report);
     turn_faces(result.mesh.triangles, orientation.reversed);
+    result.turned = std::move(orientation.reversed);
     if (!result.importance.empty())
     {
         // Copies that the cutting made are appended.

@@ -35,6 +35,11 @@ struct RepairedMesh
     /// Per vertex of `mesh` the largest importance among the input vertices that became it; empty
     /// when none was given.
     std::vector<float> importance;
+    /// Per triangle of `mesh` the one of the input that it was; they ascend.
+    std::vector<std::uint32_t> source_faces;
+    /// Per triangle of `mesh` 1 when it was turned round: its second corner was the third of the
+    /// input's triangle, and its third the second.
+    std::vector<std::uint8_t> turned;
     RepairReport report;
     std::uint32_t components = 0;
     std::uint32_t boundary_edges = 0;

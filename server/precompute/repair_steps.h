@@ -12,11 +12,10 @@ namespace vsplit::precompute {
 /// First step of repair_mesh(): welds equal positions, drops degenerate and duplicate triangles and
 /// every vertex that is then unused; the order of the others stays.
 /// `mesh`: finite positions, indices in range. Fills welded_vertices, isolated_vertices,
-/// degenerate_faces and duplicate_faces of `report`. Cost: two sorts. Thread safe.
-/// `importance`: per vertex, or empty; on return that of the result, a welded vertex having the largest.
-[[nodiscard]] IndexedMesh weld_and_clean(
-    const IndexedMesh& mesh, std::vector<float>& importance, RepairReport& report
-);
+/// degenerate_faces and duplicate_faces of its report. Cost: two sorts. Thread safe.
+/// `result`: gets mesh and source faces; its importance, per vertex of `mesh` or empty, becomes that of
+/// the result, a welded vertex having the largest.
+void weld_and_clean(const IndexedMesh& mesh, RepairedMesh& result);
 
 /// Which faces belong together across edges, and which must turn round to agree.
 struct Orientation

@@ -106,24 +106,29 @@ std::vector<std::uint8_t> find_duplicates(
     return duplicate;
 }
 
-std::vector<Triangle> clean_triangles(
+/// Fills triangles and source faces of `result`.
+void clean_triangles(
     std::span<const Triangle> triangles,
     const std::vector<std::uint32_t>& representative,
-    RepairReport& report
+    RepairedMesh& result
 )
 {
-    std::vector<Triangle> proper;
+    std::vector<Triangle>& proper = result.mesh.triangles;
+    std::vector<std::uint32_t>& sources = result.source_faces;
     proper.reserve(triangles.size());
-    for (const auto& [first, second, third] : triangles)
+    sources.reserve(triangles.size());
+    for (std::uint32_t face = 0; face < triangles.size(); ++face)
     {
+        const auto& [first, second, third] = triangles[face];
         const Triangle welded{representative[first], representative[second], representative[third]};
         const auto& [a, b, c] = welded;
         if (a == b || b == c || c == a)
         {
-            ++report.degenerate_faces;
+            ++result.report.degenerate_faces;
             continue;
         }
         proper.push_back(welded);
+        sources.push_back(face);
     }
     const auto duplicate = find_duplicates(proper, representative.size());
     std::size_t kept = 0;
@@ -131,12 +136,13 @@ std::vector<Triangle> clean_triangles(
     {
         if (duplicate[face] == 0)
         {
+            sources[kept] = sources[face];
             proper[kept++] = proper[face];
         }
     }
-    report.duplicate_faces = static_cast<std::uint32_t>(proper.size() - kept);
+    result.report.duplicate_faces = static_cast<std::uint32_t>(proper.size() - kept);
     proper.resize(kept);
-    return proper;
+    sources.resize(kept);
 }
 
 /// Moves importance from the vertices of the input to those that they became.
@@ -168,36 +174,33 @@ void follow_vertices(
 
 }  // namespace
 
-IndexedMesh weld_and_clean(
-    const IndexedMesh& mesh, std::vector<float>& importance, RepairReport& report
-)
+void weld_and_clean(const IndexedMesh& mesh, RepairedMesh& result)
 {
     const std::size_t count = mesh.positions.size();
-    const auto representative = weld(mesh, used_vertices(mesh.triangles, count), report);
-    IndexedMesh result;
-    result.triangles = clean_triangles(mesh.triangles, representative, report);
+    const auto representative = weld(mesh, used_vertices(mesh.triangles, count), result.report);
+    clean_triangles(mesh.triangles, representative, result);
 
-    const auto used = used_vertices(result.triangles, count);
+    const auto used = used_vertices(result.mesh.triangles, count);
     std::vector<std::uint32_t> renumbered(count, 0);
     for (std::size_t vertex = 0; vertex < count; ++vertex)
     {
         if (used[vertex] != 0)
         {
-            renumbered[vertex] = static_cast<std::uint32_t>(result.positions.size());
-            result.positions.push_back(mesh.positions[vertex]);
+            renumbered[vertex] = static_cast<std::uint32_t>(result.mesh.positions.size());
+            result.mesh.positions.push_back(mesh.positions[vertex]);
         }
     }
-    report.isolated_vertices =
-        static_cast<std::uint32_t>(count - result.positions.size()) - report.welded_vertices;
-    for (Triangle& triangle : result.triangles)
+    result.report.isolated_vertices =
+        static_cast<std::uint32_t>(count - result.mesh.positions.size()) -
+        result.report.welded_vertices;
+    for (Triangle& triangle : result.mesh.triangles)
     {
         for (std::uint32_t& vertex : triangle)
         {
             vertex = renumbered[vertex];
         }
     }
-    follow_vertices(importance, representative, used, renumbered);
-    return result;
+    follow_vertices(result.importance, representative, used, renumbered);
 }
 
 }  // namespace vsplit::precompute

@@ -3,8 +3,9 @@ find_package(OpenMesh CONFIG REQUIRED)
 vsplit_fuzzer(mesh_import_fuzzer mesh_import_fuzzer.cpp vsplit_mesh OpenMeshCore)
 foreach(
     source
-    edge_table half_edge_mesh mesh_builder om_chunks ply_header read_obj read_off read_om read_ply
-    read_stl repair repair_orient repair_split repair_weld text_scan validate
+    corner_table edge_table group_table half_edge_mesh image_collector image_header material_library
+    mesh_builder om_chunks ply_columns ply_header read_obj read_off read_om read_ply read_stl repair
+    repair_orient repair_split repair_weld text_scan tidy_attributes validate
 )
     target_sources(
         mesh_import_fuzzer PRIVATE ${PROJECT_SOURCE_DIR}/server/precompute/${source}.cpp

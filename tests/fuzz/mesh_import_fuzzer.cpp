@@ -11,11 +11,17 @@
 #include <cstdlib>
 #include <span>
 #include <string_view>
+#include <utility>
 
 namespace {
 
 using namespace vsplit;
 using namespace vsplit::precompute;
+
+Result<IndexedMesh> mesh_of(Result<SourceModel> model)
+{
+    return std::move(model).map([](SourceModel&& read) { return std::move(read.surface.mesh); });
+}
 
 Result<IndexedMesh> read(std::uint8_t format, std::span<const std::byte> bytes)
 {
@@ -23,11 +29,11 @@ Result<IndexedMesh> read(std::uint8_t format, std::span<const std::byte> bytes)
     switch (format % 5)
     {
         case 0:
-            return read_ply(bytes);
+            return mesh_of(read_ply_model(bytes, nullptr));
         case 1:
             return read_off(text);
         case 2:
-            return read_obj(text);
+            return mesh_of(read_obj_model(text, nullptr));
         case 3:
             return read_stl(bytes);
         default:
