@@ -1,11 +1,13 @@
 // Bytes of Draco's file of a mesh alone, with each of its attributes, and with all of them.
 #include "draco_surface.h"
-#include "surface_reader.h"
+#include "precompute/repair_surface.h"
+#include "precompute/surface_io.h"
 
 #include <nlohmann/json.hpp>
 
 #include <cstdio>
 #include <string>
+#include <utility>
 
 namespace vsplit::bench {
 namespace {
@@ -35,12 +37,14 @@ Result<std::size_t> file_bytes(const Surface& surface)
 
 Result<void> run(const char* path)
 {
-    const auto source = read_bench_surface(path);
+    const auto source = precompute::read_surface(path);
     VSPLIT_TRY(source);
-    const auto repaired = repair_surface(*source);
+    auto repaired = precompute::repair_surface(source->surface);
     VSPLIT_TRY(repaired);
     Surface alone;
-    alone.mesh = repaired->mesh;
+    alone.mesh = std::move(repaired->repaired.mesh);
+    Surface complete = alone;
+    complete.attributes = repaired->attributes;
     const auto positions = file_bytes(alone);
     VSPLIT_TRY(positions);
     auto rows = nlohmann::json::object();
@@ -52,11 +56,11 @@ Result<void> run(const char* path)
         VSPLIT_TRY(bytes);
         rows[name_of(attribute.kind)] = *bytes - *positions;
     }
-    const auto all = file_bytes(*repaired);
+    const auto all = file_bytes(complete);
     VSPLIT_TRY(all);
     const nlohmann::json report{
-        {"vertices", repaired->mesh.positions.size()},
-        {"faces", repaired->mesh.triangles.size()},
+        {"vertices", alone.mesh.positions.size()},
+        {"faces", alone.mesh.triangles.size()},
         {"positions", *positions},
         {"added", rows},
         {"all", *all}};
