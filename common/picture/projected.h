@@ -45,7 +45,38 @@ public:
     /// Calls visit(x, y) for every pixel of a picture of `size` whose centre is inside; centres on an
     /// edge belong to exactly one of the triangles that share it.
     template <typename Visit>
-    void visit_pixels(std::uint32_t size, Visit&& visit) const;
+    void visit_pixels(std::uint32_t size, Visit&& visit) const
+    {
+        const auto [left, right] = std::minmax({corners_[0].x, corners_[1].x, corners_[2].x});
+        const auto [top, bottom] = std::minmax({corners_[0].y, corners_[1].y, corners_[2].y});
+        const std::int64_t last = std::int64_t{size} - 1;
+        const std::int64_t first_x = std::max<std::int64_t>(left / kSubpixels - 1, 0);
+        const std::int64_t first_y = std::max<std::int64_t>(top / kSubpixels - 1, 0);
+        const std::int64_t last_x = std::min(right / kSubpixels, last);
+        const std::int64_t last_y = std::min(bottom / kSubpixels, last);
+        for (std::int64_t y = first_y; y <= last_y; ++y)
+        {
+            const std::int64_t centre = y * kSubpixels + kSubpixels / 2;
+            std::array<std::int64_t, 3> value{};
+            std::array<std::int64_t, 3> step{};
+            for (std::size_t k = 0; k < 3; ++k)
+            {
+                const std::int64_t start = first_x * kSubpixels + kSubpixels / 2;
+                value[k] = edge(k, start, centre) + fill_[k];
+                step[k] = -(corners_[(k + 2) % 3].y - corners_[(k + 1) % 3].y) * kSubpixels;
+            }
+            for (std::int64_t x = first_x; x <= last_x; ++x)
+            {
+                if ((value[0] | value[1] | value[2]) >= 0)
+                {
+                    visit(x, y);
+                }
+                value[0] += step[0];
+                value[1] += step[1];
+                value[2] += step[2];
+            }
+        }
+    }
 
     /// Shares of the corners, in the order of the triangle that make() was given, at a pixel's centre:
     /// perspective-correct. Pixels outside the triangle extrapolate.
@@ -56,7 +87,12 @@ public:
 
 private:
     /// Twice the area, in subpixels, that a point spans with the edge opposite to a corner.
-    [[nodiscard]] std::int64_t edge(std::size_t corner, std::int64_t x, std::int64_t y) const;
+    [[nodiscard]] std::int64_t edge(std::size_t corner, std::int64_t x, std::int64_t y) const
+    {
+        const ScreenVertex& from = corners_[(corner + 1) % 3];
+        const ScreenVertex& to = corners_[(corner + 2) % 3];
+        return (to.x - from.x) * (y - from.y) - (to.y - from.y) * (x - from.x);
+    }
 
     /// Shares on the screen, each divided by its corner's depth in perspective.
     [[nodiscard]] Shares weights(std::int64_t x, std::int64_t y) const;
@@ -67,46 +103,5 @@ private:
     bool turned_ = false;
     Projection projection_ = Projection::Perspective;
 };
-
-inline std::int64_t ScreenTriangle::edge(std::size_t corner, std::int64_t x, std::int64_t y) const
-{
-    const ScreenVertex& from = corners_[(corner + 1) % 3];
-    const ScreenVertex& to = corners_[(corner + 2) % 3];
-    return (to.x - from.x) * (y - from.y) - (to.y - from.y) * (x - from.x);
-}
-
-template <typename Visit>
-void ScreenTriangle::visit_pixels(std::uint32_t size, Visit&& visit) const
-{
-    const auto [left, right] = std::minmax({corners_[0].x, corners_[1].x, corners_[2].x});
-    const auto [top, bottom] = std::minmax({corners_[0].y, corners_[1].y, corners_[2].y});
-    const std::int64_t last = std::int64_t{size} - 1;
-    const std::int64_t first_x = std::max<std::int64_t>(left / kSubpixels - 1, 0);
-    const std::int64_t first_y = std::max<std::int64_t>(top / kSubpixels - 1, 0);
-    const std::int64_t last_x = std::min(right / kSubpixels, last);
-    const std::int64_t last_y = std::min(bottom / kSubpixels, last);
-    for (std::int64_t y = first_y; y <= last_y; ++y)
-    {
-        const std::int64_t centre = y * kSubpixels + kSubpixels / 2;
-        std::array<std::int64_t, 3> value{};
-        std::array<std::int64_t, 3> step{};
-        for (std::size_t k = 0; k < 3; ++k)
-        {
-            const std::int64_t start = first_x * kSubpixels + kSubpixels / 2;
-            value[k] = edge(k, start, centre) + fill_[k];
-            step[k] = -(corners_[(k + 2) % 3].y - corners_[(k + 1) % 3].y) * kSubpixels;
-        }
-        for (std::int64_t x = first_x; x <= last_x; ++x)
-        {
-            if ((value[0] | value[1] | value[2]) >= 0)
-            {
-                visit(x, y);
-            }
-            value[0] += step[0];
-            value[1] += step[1];
-            value[2] += step[2];
-        }
-    }
-}
 
 }  // namespace vsplit::picture

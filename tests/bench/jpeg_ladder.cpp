@@ -118,11 +118,12 @@ Result<const JpegFile*> JpegLadder::file_of(Key key)
     return &file;
 }
 
-Result<JpegFile> JpegLadder::best(std::size_t bytes)
+Result<std::vector<JpegFile>> JpegLadder::best_by_size(std::size_t bytes)
 {
-    const JpegFile* best = nullptr;
+    std::vector<JpegFile> files;
     for (int scale = 0; scale < static_cast<int>(kScales.size()); ++scale)
     {
+        const JpegFile* best = nullptr;
         for (const int subsampled : {0, 1})
         {
             const auto quality = best_quality(scale, subsampled, bytes);
@@ -133,13 +134,22 @@ Result<JpegFile> JpegLadder::best(std::size_t bytes)
             }
             const auto file = file_of({scale, subsampled, *quality});
             VSPLIT_TRY(file);
-            if (best == nullptr || (*file)->error < best->error)
-            {
-                best = *file;
-            }
+            best = best == nullptr || (*file)->error < best->error ? *file : best;
+        }
+        if (best != nullptr)
+        {
+            files.push_back(*best);
         }
     }
-    return best == nullptr ? JpegFile{} : *best;
+    return files;
+}
+
+Result<JpegFile> JpegLadder::best(std::size_t bytes)
+{
+    const auto files = best_by_size(bytes);
+    VSPLIT_TRY(files);
+    const auto best = std::ranges::min_element(*files, {}, &JpegFile::error);
+    return best == files->end() ? JpegFile{} : *best;
 }
 
 }  // namespace vsplit::bench

@@ -34,6 +34,10 @@ public:
     /// fits. Errors: those of the JPEG library.
     [[nodiscard]] Result<JpegFile> best(std::size_t bytes);
 
+    /// By size of the image the file of at most so many bytes that is closest to the original; sizes of
+    /// which none fits are left out. Errors: those of the JPEG library.
+    [[nodiscard]] Result<std::vector<JpegFile>> best_by_size(std::size_t bytes);
+
 private:
     using Key = std::array<int, 3>;  // scale, subsampled, quality
 

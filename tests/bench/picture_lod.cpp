@@ -124,7 +124,10 @@ class PictureLodSearch::Impl
 {
 public:
     Impl(const ShownModel& original, const Raster& image)
-        : original_(original), ladder_(original.surface), quick_(original, 3, 256)
+        : original_(original),
+          ladder_(original.surface),
+          quick_(original, 3, 256),
+          careful_(original, 2, 512)
     {
         if (!image.pixels.empty())
         {
@@ -158,6 +161,7 @@ public:
         candidates.resize(std::min(candidates.size(), kFinalists));
         for (PictureLod& lod : candidates)
         {
+            VSPLIT_TRY(choose_image(bytes, lod));
             lod.figures = judge.judge(lod.shown);
         }
         return *std::ranges::max_element(candidates, {}, [](const PictureLod& lod) {
@@ -237,18 +241,48 @@ private:
         {
             const auto jpeg = images_->best(bytes - lod.geometry_bytes);
             VSPLIT_TRY(jpeg);
-            lod.image_bytes = jpeg->bytes;
-            lod.side = jpeg->side;
-            lod.quality = jpeg->quality;
-            lod.shown.textures.emplace_back(jpeg->shown);
+            put_image(*jpeg, lod);
         }
         lod.figures = quick_.judge(lod.shown);
         return lod;
     }
 
+    static void put_image(const JpegFile& jpeg, PictureLod& lod)
+    {
+        lod.image_bytes = jpeg.bytes;
+        lod.side = jpeg.side;
+        lod.quality = jpeg.quality;
+        lod.shown.textures = {picture::Texture(jpeg.shown)};
+    }
+
+    /// Takes the image's size that looks best, which need not be the closest one pixel by pixel.
+    Result<void> choose_image(std::size_t bytes, PictureLod& lod)
+    {
+        if (!images_)
+        {
+            return {};
+        }
+        const auto files = images_->best_by_size(bytes - lod.geometry_bytes);
+        VSPLIT_TRY(files);
+        PictureLod best = lod;
+        best.figures.psnr = 0.0;
+        for (const JpegFile& file : *files)
+        {
+            put_image(file, lod);
+            lod.figures = careful_.judge(lod.shown);
+            if (lod.figures.psnr > best.figures.psnr)
+            {
+                best = lod;
+            }
+        }
+        lod = std::move(best);
+        return {};
+    }
+
     const ShownModel& original_;
     SurfaceLadder ladder_;
     PictureJudge quick_;
+    PictureJudge careful_;
     std::optional<JpegLadder> images_;
     bool has_normals_ = false;
     std::map<Key, std::size_t> bytes_;

@@ -11,10 +11,16 @@ namespace vsplit::test {
 namespace {
 
 using precompute::ChunkOrder;
-using precompute::order_chunks;
 using precompute::OrderOptions;
 using precompute::OrderSource;
 using precompute::OrderStep;
+
+/// Orders by small pictures: the tests are about choices, not about what is seen.
+Result<ChunkOrder> ordered(const OrderSource& source, OrderOptions options = {})
+{
+    options.picture_side = 96;
+    return precompute::order_chunks(source, options);
+}
 
 /// An image whose detail shows when it is larger.
 Raster noise(std::uint32_t side, std::uint8_t amount)
@@ -82,7 +88,7 @@ struct Sample
         };
     }
 
-    Surface original = globe(128);
+    Surface original = globe(96);
     std::vector<Raster> images;
     Appearance appearance;
     OrderSource source;
@@ -105,7 +111,7 @@ std::vector<std::uint32_t> indices_of(const ChunkOrder& order, std::int32_t imag
 TEST(ChunkOrder, HasEverythingOnceAndInItsOwnOrder)
 {
     Sample sample(200);
-    const auto order = order_chunks(sample.source);
+    const auto order = ordered(sample.source);
     ASSERT_TRUE(order);
     EXPECT_EQ(order->steps.front().image, OrderStep::kGeometry);
     EXPECT_THAT(indices_of(*order, OrderStep::kGeometry), ::testing::ElementsAre(0, 1, 2, 3, 4, 5));
@@ -117,8 +123,8 @@ TEST(ChunkOrder, SendsWhatIsSeenFirst)
 {
     Sample plain(4);   // hardly any detail: the shape matters
     Sample rich(255);  // nothing but detail
-    const auto of_plain = order_chunks(plain.source);
-    const auto of_rich = order_chunks(rich.source);
+    const auto of_plain = ordered(plain.source);
+    const auto of_rich = ordered(rich.source);
     ASSERT_TRUE(of_plain && of_rich);
     EXPECT_GT(of_plain->level_before(0, 4), of_rich->level_before(0, 4));
     EXPECT_LT(of_rich->level_before(0, 4), 5U);
@@ -127,7 +133,7 @@ TEST(ChunkOrder, SendsWhatIsSeenFirst)
 TEST(ChunkOrder, LowersTheErrorToThatOfTheLastState)
 {
     Sample sample(160);
-    const auto order = order_chunks(sample.source);
+    const auto order = ordered(sample.source);
     ASSERT_TRUE(order);
     EXPECT_LT(order->steps.back().error, order->steps.front().error / 20.0);
     EXPECT_TRUE(order->steps.back().measured);
@@ -136,7 +142,7 @@ TEST(ChunkOrder, LowersTheErrorToThatOfTheLastState)
 TEST(ChunkOrder, BeatsSendingOneAfterTheOther)
 {
     Sample sample(160);
-    const auto order = order_chunks(sample.source);
+    const auto order = ordered(sample.source);
     ASSERT_TRUE(order);
     // The area under the error, over bytes: of the order, of all levels first, of all chunks first.
     double area = 0.0;
@@ -146,7 +152,7 @@ TEST(ChunkOrder, BeatsSendingOneAfterTheOther)
     }
     OrderSource alone = sample.source;
     alone.texture_bytes = {{}};
-    const auto levels = order_chunks(alone);
+    const auto levels = ordered(alone);
     ASSERT_TRUE(levels);
     double separate = 0.0;
     for (std::size_t i = 1; i < levels->steps.size(); ++i)
@@ -163,7 +169,7 @@ TEST(ChunkOrder, KeepsToTheBoundsOfItsOptions)
     OrderOptions options;
     options.most_states = 6;
     options.most_pictures = 4;
-    const auto order = order_chunks(sample.source, options);
+    const auto order = ordered(sample.source, options);
     ASSERT_TRUE(order);
     EXPECT_EQ(order->steps.size(), 11U);
     EXPECT_LE(sample.drawn_levels, 6);
@@ -174,7 +180,7 @@ TEST(ChunkOrder, JudgesImagesThatAreNotDrawnByThemselves)
     Sample sample(160);
     sample.appearance.materials[0].base_color_texture.image = -1;
     sample.appearance.materials[0].normal_texture.image = 0;
-    const auto order = order_chunks(sample.source);
+    const auto order = ordered(sample.source);
     ASSERT_TRUE(order);
     EXPECT_EQ(order->steps.size(), 11U);
     EXPECT_LT(order->level_before(0, 0), 5U);
@@ -183,8 +189,8 @@ TEST(ChunkOrder, JudgesImagesThatAreNotDrawnByThemselves)
 TEST(ChunkOrder, IsTheSameEveryTime)
 {
     Sample a(160), b(160);
-    const auto first = order_chunks(a.source);
-    const auto second = order_chunks(b.source);
+    const auto first = ordered(a.source);
+    const auto second = ordered(b.source);
     ASSERT_TRUE(first && second);
     ASSERT_EQ(first->steps.size(), second->steps.size());
     for (std::size_t i = 0; i < first->steps.size(); ++i)
@@ -200,7 +206,7 @@ TEST(ChunkOrder, PassesErrorsOn)
     sample.source.image = [](std::uint32_t, std::uint32_t) -> Result<Raster> {
         return fail(ErrorCode::BadChunk, "no image");
     };
-    const auto order = order_chunks(sample.source);
+    const auto order = ordered(sample.source);
     ASSERT_FALSE(order);
     EXPECT_EQ(order.error().code, ErrorCode::BadChunk);
 }
