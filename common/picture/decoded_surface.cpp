@@ -1,5 +1,7 @@
 #include "picture/decoded_surface.h"
 
+#include "core/assert.h"
+
 #include <utility>
 
 namespace vsplit::picture {
@@ -24,6 +26,22 @@ SurfaceAttribute copy_attribute(
 
 }  // namespace
 
+std::vector<SurfaceAttribute> decoded_attributes(
+    std::span<const codec::AttributeInfo> infos, const codec::LevelAttributes& attributes
+)
+{
+    VSPLIT_ASSERT(attributes.values.size() == infos.size());
+    std::vector<SurfaceAttribute> result;
+    for (std::size_t i = 0; i < infos.size(); ++i)
+    {
+        if (!attributes.values[i].empty())
+        {
+            result.push_back(copy_attribute(infos[i], attributes.values[i], attributes.wedges));
+        }
+    }
+    return result;
+}
+
 Surface decoded_surface(const codec::StreamDecoder& decoder)
 {
     Surface surface;
@@ -34,15 +52,7 @@ Surface decoded_surface(const codec::StreamDecoder& decoder)
         return surface;
     }
     surface.groups = attributes->groups;
-    for (std::size_t i = 0; i < attributes->values.size(); ++i)
-    {
-        if (!attributes->values[i].empty())
-        {
-            surface.attributes.push_back(copy_attribute(
-                decoder.info()->attributes[i], attributes->values[i], attributes->wedges
-            ));
-        }
-    }
+    surface.attributes = decoded_attributes(decoder.info()->attributes, *attributes);
     return surface;
 }
 
