@@ -20,6 +20,7 @@ inline constexpr std::uint32_t kMaxVertices = 1U << 28;
 inline constexpr std::uint32_t kMaxFaces = (1U << 29) - 2;
 inline constexpr std::uint32_t kMaxChunks = 1U << 20;
 inline constexpr std::uint32_t kMaxLevels = 1024;
+inline constexpr std::uint32_t kMaxAttributes = 16;
 inline constexpr std::uint32_t kMaxHeaderBytes = 1U << 24;
 
 /// Chunks are cut so that they stay near this size; a reader accepts larger ones within its limits.
@@ -33,6 +34,9 @@ inline constexpr std::uint8_t kSinglePrecisionGrid = 0x80;
 
 /// Added to the position bits when a table of attributes follows.
 inline constexpr std::uint8_t kHasAttributes = 0x20;
+
+/// Added to an attribute's kind when colours are coded as red, green and blue.
+inline constexpr std::uint8_t kRgbColor = 0x08;
 
 /// What a chunk holds. Kinds below 64 are required: a reader that does not know one refuses the
 /// stream; kinds from 64 on are optional and may be skipped by their length.
@@ -49,6 +53,10 @@ enum class ChunkKind : std::uint8_t
 };
 
 inline constexpr std::uint8_t kFirstOptionalChunkKind = 64;
+
+/// Codecs of attributes.
+inline constexpr std::uint8_t kValuesCodec = 0;   ///< Wedges, groups, values of a level.
+inline constexpr std::uint8_t kNormalsCodec = 1;  ///< Normals of the last level.
 
 /// Codecs of the base mesh.
 inline constexpr std::uint8_t kDracoBaseCodec = 0;  ///< A Draco mesh.

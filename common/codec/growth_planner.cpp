@@ -23,6 +23,9 @@ constexpr double kGrowthBits = 3.2;
 constexpr double kFewestGrowthBits = 2.0;
 constexpr std::uint32_t kSmallMesh = 8000;
 
+/// Share of the shape in a prefix that also holds attributes.
+constexpr double kShapeShare = 0.6;
+
 /// The same on the full grid: without a bit missing the surface is off by about a cell.
 constexpr double kGrowthBitsOnGrid = 1.2;
 
@@ -31,9 +34,10 @@ constexpr std::size_t kSavesOneIn = 24;
 
 }  // namespace
 
-GrowthStart growth_start(std::size_t bytes, std::uint32_t vertices, int shift)
+GrowthStart growth_start(std::size_t bytes, std::uint32_t vertices, int shift, bool has_attributes)
 {
-    const double bits = 8.0 * static_cast<double>(bytes) / vertices;
+    const double share = has_attributes ? kShapeShare : 1.0;
+    const double bits = 8.0 * static_cast<double>(bytes) / (vertices * share);
     const bool is_small = vertices < kSmallMesh;
     if (bits >= kGrowthBits || (shift == 0 && !is_small && bits >= kGrowthBitsOnGrid))
     {

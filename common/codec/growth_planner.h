@@ -26,8 +26,10 @@ enum class GrowthStart : std::uint8_t
 };
 
 /// Judges a prefix. `bytes`: of the chunks so far; `vertices`: of the complete mesh; `shift`: of the
-/// prefix's level.
-[[nodiscard]] GrowthStart growth_start(std::size_t bytes, std::uint32_t vertices, int shift);
+/// prefix's level; `has_attributes`: the prefix will also hold attributes, not counted in `bytes`.
+[[nodiscard]] GrowthStart growth_start(
+    std::size_t bytes, std::uint32_t vertices, int shift, bool has_attributes
+);
 
 /// Says whether growing makes a stream so much smaller than splits that nothing need show meanwhile.
 /// `grown`, `split`: bytes of the streams.

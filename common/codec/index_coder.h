@@ -31,6 +31,7 @@ struct IndexRow
     std::uint32_t max_code = 0;
     std::uint32_t level_chunks = 0;    ///< First chunk of a level: chunks of the level.
     std::uint32_t level_vertices = 0;  ///< First chunk of a level: what the level adds.
+    std::uint32_t tag = 0;             ///< Of optional kinds, see ChunkInfo.
 };
 
 /// Builds the model of an integer that typically is below 2^`size`. `nonzero`: probability, 1/65536, that
@@ -70,6 +71,17 @@ struct IndexModel
     IntegerModel maximum = make_index_integer(56000, 2);
 };
 
+/// By kind the kind and codec, 256 * kind + codec, that are expected to follow at first.
+[[nodiscard]] constexpr std::array<std::uint32_t, 256> first_followers()
+{
+    constexpr auto kBatch = static_cast<std::uint32_t>(proto::ChunkKind::Batch);
+    constexpr auto kGrowth = static_cast<std::uint32_t>(proto::ChunkKind::Growth);
+    std::array<std::uint32_t, 256> result{};
+    result.fill(kBatch << 8);
+    result[kGrowth] = kGrowth << 8;
+    return result;
+}
+
 /// Codes row after row. `Coder`: BitEncoder or BitDecoder. Not thread safe. Safe on untrusted input.
 template <typename Coder>
 class IndexCoder
@@ -102,22 +114,28 @@ public:
                row.max_code <= kZeroErrorCode;
     }
 
-    /// Codes kind and codec of the next row.
+    /// Codes kind and codec of the next row: what followed the kind before the last time, or another.
     void code_kind(IndexRow& row)
     {
-        const bool other = row.kind != kind_ || row.codec != codec_;
-        if (code_bit(coder_, model_.other_kind, other))
+        const auto wanted =
+            static_cast<std::uint32_t>(row.kind) << 8 | static_cast<std::uint32_t>(row.codec);
+        std::uint32_t& expected = following_[last_kind_ >> 8];
+        if (code_bit(coder_, model_.other_kind, wanted != expected))
         {
-            kind_ =
-                static_cast<proto::ChunkKind>(coder_.raw(static_cast<std::uint8_t>(row.kind), 8));
-            codec_ = static_cast<std::uint8_t>(coder_.raw(row.codec, 8));
+            expected = coder_.raw(wanted, 16);
         }
-        row.kind = kind_;
-        row.codec = codec_;
+        last_kind_ = expected;
+        row.kind = static_cast<proto::ChunkKind>(expected >> 8);
+        row.codec = static_cast<std::uint8_t>(expected);
     }
 
-    /// Codes the rest of the row of an optional chunk.
-    void code_optional(IndexRow& row) { row.bytes = code_number(row.bytes); }
+    /// Codes the rest of the row of an optional chunk. Result: false when it is too long.
+    [[nodiscard]] bool code_optional(IndexRow& row)
+    {
+        row.bytes = code_number(row.bytes);
+        row.tag = code_number(row.tag);
+        return row.bytes <= kMostBytes;
+    }
 
     /// Codes the rest of the row of a Batch chunk. Result: false when a value is out of range.
     [[nodiscard]] bool code_batch(IndexRow& row)
@@ -335,9 +353,9 @@ private:
     Coder& coder_;
     IndexModel model_;
     SplitCost cost_;
-    proto::ChunkKind kind_ = proto::ChunkKind::Batch;
-    std::uint8_t codec_ = 0;
-    std::uint32_t vertices_ = 0;        ///< After the last row.
+    std::uint32_t last_kind_ = 0;  ///< Of the row before, 256 * kind + codec; the base has 0.
+    std::array<std::uint32_t, 256> following_ = first_followers();  ///< By kind, the last time.
+    std::uint32_t vertices_ = 0;                                    ///< After the last row.
     std::uint32_t level_start_ = 0;     ///< Vertices when the level started.
     std::uint32_t level_vertices_ = 0;  ///< Splits of the level.
     std::uint32_t vertices_left_ = 0;   ///< Of them to come.

@@ -14,12 +14,6 @@
 
 namespace vsplit::codec {
 
-/// True for chunks that a reader may skip.
-[[nodiscard]] inline bool is_optional(proto::ChunkKind kind)
-{
-    return static_cast<std::uint8_t>(kind) >= proto::kFirstOptionalChunkKind;
-}
-
 /// Reads the rows of the index one after another into the table of chunks.
 class IndexReader
 {
@@ -64,11 +58,7 @@ private:
         }
         VSPLIT_TRY(check_kind(row));
         const bool optional = is_optional(row.kind);
-        if (optional)
-        {
-            index_.code_optional(row);
-        }
-        else if (!code_required(row, base))
+        if (optional ? !index_.code_optional(row) : !code_required(row, base))
         {
             return fail(ErrorCode::BadHeader, "a row of the index is out of range");
         }
@@ -192,6 +182,7 @@ private:
         chunk.kind = row.kind;
         chunk.codec = row.codec;
         chunk.bytes = row.bytes;
+        chunk.tag = row.tag;
         chunk.offset = info_.file_bytes;
         info_.file_bytes += chunk.bytes;
         info_.vertex_count = chunk.vertices;

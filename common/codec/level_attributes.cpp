@@ -29,7 +29,53 @@ void write_normal(std::span<const std::int32_t> coded, int bits, std::span<float
     out[2] = z / length;
 }
 
+/// Turns brightness and two differences back into red, green and blue.
+/// Source: Malvar, Sullivan, "YCoCg-R: A Color Space with RGB Reversibility and Low Dynamic Range", 2003.
+void write_color(
+    const AttributeInfo& info, std::span<const std::int32_t> coded, std::span<float> out
+)
+{
+    if (info.rgb)
+    {
+        std::ranges::transform(coded, out.begin(), [&](std::int32_t number) {
+            return static_cast<float>(number) * info.cell;
+        });
+        return;
+    }
+    const float cell = info.cell;
+    const std::int32_t t = coded[0] - (coded[2] >> 1);
+    const std::int32_t green = coded[2] + t;
+    const std::int32_t blue = t - (coded[1] >> 1);
+    const std::int32_t red = blue + coded[1];
+    const float most = 1.0F;
+    out[0] = std::clamp(static_cast<float>(red) * cell, 0.0F, most);
+    out[1] = std::clamp(static_cast<float>(green) * cell, 0.0F, most);
+    out[2] = std::clamp(static_cast<float>(blue) * cell, 0.0F, most);
+    if (coded.size() > 3)
+    {
+        out[3] = static_cast<float>(coded[3]) * cell;
+    }
+}
+
 }  // namespace
+
+bool is_valid(const AttributeInfo& info)
+{
+    const bool bits = info.bits >= 1 && info.bits <= kMaxAttributeBits &&
+                      (!info.rgb || info.kind == AttributeKind::Color);
+    switch (info.kind)
+    {
+        case AttributeKind::TexCoord:
+            return bits && info.components == 2;
+        case AttributeKind::Normal:
+            return bits && info.bits >= 2 && info.components == 3;
+        case AttributeKind::Color:
+            return bits && (info.components == 3 || info.components == 4);
+        case AttributeKind::Scalar:
+            return bits && info.components >= 1 && info.components <= 4;
+    }
+    return false;
+}
 
 void write_values(
     const AttributeInfo& info, std::span<const std::int32_t> coded, std::span<float> out
@@ -45,6 +91,11 @@ void write_values(
         if (info.kind == AttributeKind::Normal)
         {
             write_normal(value, info.bits, target);
+            continue;
+        }
+        if (info.kind == AttributeKind::Color)
+        {
+            write_color(info, value, target);
             continue;
         }
         for (std::size_t k = 0; k < numbers; ++k)

@@ -12,6 +12,9 @@
 
 namespace vsplit::codec {
 
+/// Most bits of a coded number.
+inline constexpr std::uint8_t kMaxAttributeBits = 16;
+
 /// What the header tells of an attribute. Normals are coded as two numbers, see write_values().
 struct AttributeInfo
 {
@@ -19,6 +22,8 @@ struct AttributeInfo
     std::uint8_t set = 0;         ///< Number among the attributes of its kind.
     std::uint8_t components = 2;  ///< Of a value: 2 texture coordinates, 3 normals, 1 .. 4 others.
     std::uint8_t bits = 10;       ///< Of a coded number, 1 .. 16.
+    /// Colours only: coded as red, green and blue, not as brightness and two differences.
+    bool rgb = false;
     std::string name;
     std::array<float, 4> origin{};  ///< By component the value of 0; not used by normals.
     float cell = 1.0F;              ///< Step of a value, > 0; not used by normals.
@@ -41,6 +46,15 @@ struct LevelAttributes
 [[nodiscard]] inline std::size_t coded_components(const AttributeInfo& info)
 {
     return info.kind == AttributeKind::Normal ? 2 : info.components;
+}
+
+/// Tells whether attributes like this one can be coded: kind, components and bits fit each other.
+[[nodiscard]] bool is_valid(const AttributeInfo& info);
+
+/// Tells whether an attribute has an origin and a cell of its own; colours and normals have not.
+[[nodiscard]] inline bool has_grid(const AttributeInfo& info)
+{
+    return info.kind == AttributeKind::TexCoord || info.kind == AttributeKind::Scalar;
 }
 
 /// Turns coded numbers into values: `components` floats for every value; normals are unit vectors.

@@ -100,7 +100,12 @@ std::span<const std::uint32_t> StreamDecoder::stitches() const
 
 const LevelAttributes* StreamDecoder::attributes() const
 {
-    return nullptr;
+    return impl_->attributes();
+}
+
+LevelMesh StreamDecoder::level_mesh() const
+{
+    return impl_->level_mesh();
 }
 
 }  // namespace vsplit::codec

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "codec/level_attributes.h"
+#include "codec/level_mesh.h"
 #include "codec/stream_info.h"
 #include "codec/triangle_updates.h"
 #include "core/result.h"
@@ -113,6 +114,10 @@ public:
     /// Attributes as of the last step with attributes_complete; nullptr as long as there are none. They
     /// fit the triangles of the level that they came with, until the next chunk changes these.
     [[nodiscard]] const LevelAttributes* attributes() const;
+
+    /// Copies the mesh shown with its neighbours and the positions on the level's grid, in the order of
+    /// slots. Cost: linear.
+    [[nodiscard]] LevelMesh level_mesh() const;
 
 private:
     class Impl;

@@ -2,6 +2,7 @@
 
 // The inside of StreamDecoder; included by stream_decoder.cpp alone.
 
+#include "codec/attribute_coder.h"
 #include "codec/base_mesh_decoder.h"
 #include "codec/batch_coder.h"
 #include "codec/entropy_coder.h"
@@ -102,6 +103,19 @@ public:
                 out[face.slot] = face.vertex;
             }
         }
+    }
+
+    /// As StreamDecoder::attributes().
+    const LevelAttributes* attributes() const
+    {
+        return attributes_ && attributes_->has_level() ? &attributes_->shown() : nullptr;
+    }
+
+    /// As StreamDecoder::level_mesh().
+    LevelMesh level_mesh() const
+    {
+        return grown() ? codec::level_mesh(growth_->faces(), growth_->positions())
+                       : codec::level_mesh(state_.mesh);
     }
 
     std::optional<StreamInfo> info_;
@@ -210,13 +224,24 @@ private:
         {
             return decode_stitches(bytes);
         }
-        if (static_cast<std::uint8_t>(chunk.kind) >= proto::kFirstOptionalChunkKind)
+        if (chunk.kind == proto::ChunkKind::Attributes && chunk.codec <= proto::kNormalsCodec &&
+            limits_.attributes)
+        {
+            Result<void> done;
+            VSPLIT_TRY(take_memory([&] { done = decode_attributes(chunk, bytes, step); }));
+            return done;
+        }
+        if (is_optional(chunk.kind))
         {
             return {};
         }
         if (chunk.kind != proto::ChunkKind::Base && level_ >= limits_.max_level)
         {
             return fail(ErrorCode::LimitExceeded, "the level is beyond the limit");
+        }
+        if (attributes_ && attributes_->in_level())
+        {
+            return fail(ErrorCode::BadChunk, "the attributes of a level are not complete");
         }
         step.kind = StepKind::Chunk;
         step.level_complete = chunk.ends_level;
@@ -229,6 +254,59 @@ private:
             default:
                 return decode_batch(chunk, bytes, step);
         }
+    }
+
+    Result<void> decode_attributes(
+        const ChunkInfo& chunk, std::span<const std::byte> bytes, Step& step
+    )
+    {
+        if (next_ == 0 || !chunk.ends_level)
+        {
+            return fail(ErrorCode::BadChunk, "attributes stand within a level");
+        }
+        if (!attributes_)
+        {
+            attributes_ = std::make_unique<AttributeCoder>(info_->attributes);
+        }
+        BitDecoder bits;
+        VSPLIT_TRY(bits.start(bytes));
+        if (chunk.codec == proto::kNormalsCodec)
+        {
+            VSPLIT_TRY(decode_normals(bits, step));
+        }
+        else
+        {
+            VSPLIT_TRY(decode_values(bits, step));
+        }
+        return bits.finish();
+    }
+
+    Result<void> decode_values(BitDecoder& bits, Step& step)
+    {
+        if (!attributes_->in_level())
+        {
+            if (attributed_level_ == level_ + 1ULL)
+            {
+                return fail(ErrorCode::BadChunk, "the attributes of a level come twice");
+            }
+            VSPLIT_TRY(attributes_->begin_level(bits, level_mesh(), grown(), nullptr));
+            attributed_level_ = level_ + 1ULL;
+        }
+        VSPLIT_TRY(attributes_->code_values(bits, code_count(bits, 0)));
+        step.attributes_complete = !attributes_->in_level();
+        return {};
+    }
+
+    Result<void> decode_normals(BitDecoder& bits, Step& step)
+    {
+        if (level_ + 1ULL != info_->levels.size() || attributes_->in_level() ||
+            attributed_level_ != level_ + 1ULL)
+        {
+            return fail(ErrorCode::BadChunk, "normals come before the last level is complete");
+        }
+        VSPLIT_TRY(attributes_->code_normals(bits, code_count(bits, 0), {}));
+        step.attributes_complete = attributes_->normals_complete();
+        return {};
     }
 
     Result<void> decode_growth(const ChunkInfo& chunk, std::span<const std::byte> bytes, Step& step)
@@ -367,6 +445,8 @@ private:
     SplitUpdates updates_{state_.mesh};
     std::optional<Error> error_;
     std::size_t next_ = 0;
+    std::unique_ptr<AttributeCoder> attributes_;  ///< Once its first chunk came.
+    std::uint64_t attributed_level_ = 0;          ///< One more than the level that they belong to.
 
 public:
     /// As StreamDecoder::grid_position().

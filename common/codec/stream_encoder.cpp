@@ -1,5 +1,6 @@
 #include "codec/stream_encoder.h"
 
+#include "codec/attribute_writer.h"
 #include "codec/base_mesh_encoder.h"
 #include "codec/batch_coder.h"
 #include "codec/entropy_coder.h"
@@ -82,7 +83,7 @@ public:
         {
             StreamBuilder& grown = pays(late) ? *late : *early;
             grown.add_stitches();
-            return grown.assemble();
+            return grown.finish();
         }
         if (state_.mesh.vertex_count() != plan_.mesh->positions.size() ||
             state_.mesh.face_count() != plan_.mesh->triangles.size() || state_.shift != 0)
@@ -94,7 +95,7 @@ public:
             *plan_.training = *state_.model;
         }
         add_stitches();
-        return assemble();
+        return finish();
     }
 
 private:
@@ -296,9 +297,13 @@ private:
     GrowthStart start_of_growth(std::size_t level) const
     {
         const bool may = plan_.grow_last_level && plan_.training == nullptr;
-        return may && level + 1 < plan_.levels.size()
-                   ? growth_start(payload_.size(), plan_vertices(), plan_.levels[level].shift)
-                   : GrowthStart::Never;
+        return may && level + 1 < plan_.levels.size() ? growth_start(
+                                                            payload_.size(),
+                                                            plan_vertices(),
+                                                            plan_.levels[level].shift,
+                                                            !plan_.wedges.empty()
+                                                        )
+                                                      : GrowthStart::Never;
     }
 
     /// Makes a copy of this stream that goes on with the growth of the complete mesh; nothing when the
@@ -359,6 +364,19 @@ private:
         add_chunk(proto::ChunkKind::Stitch, chunk.view(), nullptr);
     }
 
+    /// The stream with all that lies on its meshes.
+    Result<std::vector<std::byte>> finish()
+    {
+        std::vector<std::byte> file = assemble();
+        if (plan_.wedges.empty())
+        {
+            return file;
+        }
+        const auto attributes = code_attributes(file, plan_, source_);
+        VSPLIT_TRY(attributes);
+        return insert_chunks(file, *attributes);
+    }
+
     std::vector<std::byte> assemble()
     {
         StreamInfo info;
@@ -367,6 +385,7 @@ private:
         info.face_count = plan_faces();
         info.chunks = std::move(chunks_);
         info.content_checksum = content_checksum_;
+        info.attributes = plan_.attributes;
         std::vector<std::byte> file = write_stream_header(info, extent_);
         const auto payload = payload_.view();
         file.insert(file.end(), payload.begin(), payload.end());

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <string>
 
 namespace vsplit::codec {
@@ -79,17 +80,72 @@ Result<bool> read_grid(ByteReader& reader, StreamInfo& info)
     return (*bits & proto::kHasAttributes) != 0;
 }
 
-/// Passes over the attribute table, which version 0 leaves empty: each entry is one length-prefixed
-/// block, so that a reader of today accepts a file that carries more tomorrow.
-Result<void> skip_attributes(ByteReader& reader)
+/// Reads one attribute; `reader` holds its entry and nothing else.
+Result<AttributeInfo> read_attribute(ByteReader reader)
 {
-    const auto count = read_bounded(reader, 0, 255, "attribute count");
+    const auto shape = reader.read<std::uint8_t>();
+    VSPLIT_TRY(shape);
+    const auto set = reader.read<std::uint8_t>();
+    VSPLIT_TRY(set);
+    const auto bits = reader.read<std::uint8_t>();
+    VSPLIT_TRY(bits);
+    AttributeInfo info;
+    info.kind = static_cast<AttributeKind>(*shape & 7);
+    info.rgb = (*shape & proto::kRgbColor) != 0;
+    info.components = *shape >> 4;
+    info.set = *set;
+    info.bits = *bits;
+    if (!is_valid(info))
+    {
+        return fail(ErrorCode::BadHeader, "the header describes an attribute that cannot be");
+    }
+    if (has_grid(info))
+    {
+        for (std::size_t k = 0; k < info.components; ++k)
+        {
+            const auto origin = read_number(reader, true);
+            VSPLIT_TRY(origin);
+            info.origin[k] = static_cast<float>(*origin);
+        }
+        const auto cell = read_number(reader, true);
+        VSPLIT_TRY(cell);
+        info.cell = static_cast<float>(*cell);
+        const bool finite =
+            std::ranges::all_of(info.origin, [](float x) { return std::isfinite(x); });
+        if (!finite || !std::isfinite(info.cell) || !(info.cell > 0.0F))
+        {
+            return fail(ErrorCode::BadHeader, "the grid of an attribute is not finite");
+        }
+    }
+    else
+    {
+        info.cell = 1.0F / static_cast<float>((1 << info.bits) - 1);
+    }
+    const auto name = *reader.read_bytes(reader.remaining());
+    std::ranges::transform(name, std::back_inserter(info.name), [](std::byte b) {
+        return static_cast<char>(b);
+    });
+    return info;
+}
+
+Result<void> read_attributes(ByteReader& reader, StreamInfo& info)
+{
+    const auto count = read_bounded(reader, 0, proto::kMaxAttributes, "attribute count");
     VSPLIT_TRY(count);
     for (std::uint32_t i = 0; i < *count; ++i)
     {
         const auto bytes = read_bounded(reader, 0, reader.remaining(), "attribute length");
         VSPLIT_TRY(bytes);
-        VSPLIT_TRY(reader.read_bytes(*bytes));
+        const auto attribute = read_attribute(ByteReader(*reader.read_bytes(*bytes)));
+        if (!attribute)
+        {
+            return fail(
+                ErrorCode::BadHeader,
+                "the header's table of attributes is damaged",
+                reader.position()
+            );
+        }
+        info.attributes.push_back(*attribute);
     }
     return {};
 }
@@ -115,7 +171,7 @@ Result<void> collect_levels(StreamInfo& info)
     for (const ChunkInfo& chunk : info.chunks)
     {
         level.chunk_bytes += chunk.bytes;
-        if (static_cast<std::uint8_t>(chunk.kind) >= proto::kFirstOptionalChunkKind)
+        if (is_optional(chunk.kind))
         {
             continue;
         }
@@ -207,7 +263,7 @@ Result<StreamInfo> parse_stream_info(std::span<const std::byte> prefix, const De
     info.content_checksum = *content_checksum;
     if (*has_attributes)
     {
-        VSPLIT_TRY(skip_attributes(reader));
+        VSPLIT_TRY(read_attributes(reader, info));
     }
     BitDecoder bits;
     if (!bits.start(*reader.read_bytes(reader.remaining())))

@@ -22,11 +22,6 @@ double stored_diagonal(const StreamInfo& info, const std::array<std::int32_t, 3>
     return stored.diagonal();
 }
 
-bool is_optional(proto::ChunkKind kind)
-{
-    return static_cast<std::uint8_t>(kind) >= proto::kFirstOptionalChunkKind;
-}
-
 /// Writes rows of the index; keeps what the next row needs.
 class RowWriter
 {
@@ -56,7 +51,8 @@ public:
             index_.code_kind(row);
             if (is_optional(chunk.kind))
             {
-                index_.code_optional(row);
+                row.tag = chunk.tag;
+                static_cast<void>(index_.code_optional(row));
                 return;
             }
             if (chunk.kind == proto::ChunkKind::Growth)
@@ -157,10 +153,35 @@ void code_extent(BitEncoder& bits, const QuantizationGrid& grid, std::array<std:
     }
 }
 
-void write_grid(ByteWriter& out, const QuantizationGrid& grid)
+void write_attribute(ByteWriter& out, const AttributeInfo& info)
+{
+    ByteWriter entry;
+    entry.write(static_cast<std::uint8_t>(
+        info.components << 4 | (info.rgb ? proto::kRgbColor : 0) |
+        static_cast<std::uint8_t>(info.kind)
+    ));
+    entry.write(info.set);
+    entry.write(info.bits);
+    if (has_grid(info))
+    {
+        for (std::size_t k = 0; k < info.components; ++k)
+        {
+            entry.write(std::bit_cast<std::uint32_t>(info.origin[k]));
+        }
+        entry.write(std::bit_cast<std::uint32_t>(info.cell));
+    }
+    entry.write_bytes(std::as_bytes(std::span(info.name)));
+    out.write_varint(entry.size());
+    out.write_bytes(entry.view());
+}
+
+void write_grid(ByteWriter& out, const QuantizationGrid& grid, bool attributes)
 {
     const bool single = fits_single_precision(grid);
-    out.write(static_cast<std::uint8_t>(grid.bits | (single ? proto::kSinglePrecisionGrid : 0)));
+    out.write(static_cast<std::uint8_t>(
+        grid.bits | (single ? proto::kSinglePrecisionGrid : 0) |
+        (attributes ? proto::kHasAttributes : 0)
+    ));
     for (const double number : {grid.origin[0], grid.origin[1], grid.origin[2], grid.cell})
     {
         if (single)
@@ -181,8 +202,16 @@ std::vector<std::byte> write_stream_header(
 )
 {
     ByteWriter body;
-    write_grid(body, info.grid);
+    write_grid(body, info.grid, !info.attributes.empty());
     body.write(info.content_checksum);
+    if (!info.attributes.empty())
+    {
+        body.write_varint(info.attributes.size());
+        for (const AttributeInfo& attribute : info.attributes)
+        {
+            write_attribute(body, attribute);
+        }
+    }
     BitEncoder bits;
     code_extent(bits, info.grid, extent);
     RowWriter rows(bits, info, stored_diagonal(info, extent));
@@ -234,15 +263,52 @@ Result<std::vector<std::byte>> replace_errors(
     {
         return fail(ErrorCode::Internal, "the stream has fewer levels than errors");
     }
-    std::array<std::int32_t, 3> extent{};
-    for (std::size_t axis = 0; axis < 3; ++axis)
-    {
-        const double size = info->box_max[axis] - info->box_min[axis];
-        extent[axis] = static_cast<std::int32_t>(std::floor(size / info->grid.cell + 0.5));
-    }
-    std::vector<std::byte> result = write_stream_header(*info, extent);
+    std::vector<std::byte> result = write_stream_header(*info, info->extent);
     const auto payload = file.subspan(info->header_bytes);
     result.insert(result.end(), payload.begin(), payload.end());
+    return result;
+}
+
+Result<std::vector<std::byte>> insert_chunks(
+    std::span<const std::byte> file, std::span<const ExtraChunk> extra
+)
+{
+    auto info = parse_stream_info(file);
+    VSPLIT_TRY(info);
+    ByteWriter payload;
+    std::vector<ChunkInfo> chunks;
+    std::uint32_t checksum = 0;
+    const auto append = [&](const ChunkInfo& chunk, std::span<const std::byte> bytes) {
+        chunks.push_back(chunk);
+        payload.write_bytes(bytes);
+        checksum = crc32c(bytes.last(proto::kChunkChecksumBytes), checksum);
+    };
+    for (std::size_t i = 0; i < info->chunks.size(); ++i)
+    {
+        const ChunkInfo& chunk = info->chunks[i];
+        append(chunk, file.subspan(chunk.offset, chunk.bytes));
+        for (; !extra.empty() && extra.front().after <= i; extra = extra.subspan(1))
+        {
+            ByteWriter bytes;
+            bytes.write_bytes(extra.front().bytes);
+            bytes.write(crc32c(bytes.view()));
+            ChunkInfo added = chunk;
+            added.kind = extra.front().kind;
+            added.codec = extra.front().codec;
+            added.tag = extra.front().tag;
+            added.bytes = static_cast<std::uint32_t>(bytes.size());
+            append(added, bytes.view());
+        }
+    }
+    if (!extra.empty())
+    {
+        return fail(ErrorCode::Internal, "a chunk follows none of the stream");
+    }
+    info->chunks = std::move(chunks);
+    info->content_checksum = checksum;
+    std::vector<std::byte> result = write_stream_header(*info, info->extent);
+    const auto view = payload.view();
+    result.insert(result.end(), view.begin(), view.end());
     return result;
 }
 

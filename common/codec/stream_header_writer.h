@@ -10,8 +10,18 @@
 
 namespace vsplit::codec {
 
+/// A chunk to be put into a stream, without its checksum.
+struct ExtraChunk
+{
+    std::size_t after = 0;  ///< Index of the stream's chunk that it follows.
+    proto::ChunkKind kind = proto::ChunkKind::Attributes;
+    std::uint8_t codec = 0;
+    std::uint32_t tag = 0;  ///< See ChunkInfo.
+    std::vector<std::byte> bytes;
+};
+
 /// Writes header and index.
-/// `info`: grid, counts, content checksum, and for each chunk kind, codec, bytes, ends_level, vertices, faces and errors; its other members are ignored. `extent`: largest grid index of the mesh per axis (the
+/// `info`: grid, counts, attributes, content checksum, and for each chunk kind, codec, tag, bytes, ends_level, vertices, faces and errors; its other members are ignored. `extent`: largest grid index of the mesh per axis (the
 /// smallest is 0). Result: the bytes that parse_stream_info() reads; errors come back rounded up to
 /// the next 1/32 octave. Source: proto/STREAM_FORMAT.md, "Header" and "Index".
 [[nodiscard]] std::vector<std::byte> write_stream_header(
@@ -30,6 +40,12 @@ struct LevelErrors
 /// Errors: those of parse_stream_info(); Internal when the number of levels is another.
 [[nodiscard]] Result<std::vector<std::byte>> replace_errors(
     std::span<const std::byte> file, std::span<const LevelErrors> errors
+);
+
+/// Puts optional chunks into a finished stream. `extra`: in the order of `after`.
+/// Errors: those of parse_stream_info(); Internal when a chunk would follow none of the stream.
+[[nodiscard]] Result<std::vector<std::byte>> insert_chunks(
+    std::span<const std::byte> file, std::span<const ExtraChunk> extra
 );
 
 }  // namespace vsplit::codec

@@ -41,8 +41,7 @@ std::uint64_t stop_offset(const StreamInfo& info, const StopCondition& stop)
     for (std::size_t i = 1; i < info.chunks.size(); ++i)
     {
         const ChunkInfo& chunk = info.chunks[i];
-        const bool optional =
-            static_cast<std::uint8_t>(chunk.kind) >= proto::kFirstOptionalChunkKind;
+        const bool optional = is_optional(chunk.kind);
         if (!optional && (level >= stop.level || error <= stop.error))
         {
             break;

@@ -13,6 +13,12 @@
 
 namespace vsplit::codec {
 
+/// True for chunks that a reader may skip.
+[[nodiscard]] constexpr bool is_optional(proto::ChunkKind kind)
+{
+    return static_cast<std::uint8_t>(kind) >= proto::kFirstOptionalChunkKind;
+}
+
 /// Bounds that a reader sets before it trusts a stream.
 struct DecodeLimits
 {
@@ -24,6 +30,7 @@ struct DecodeLimits
     std::uint64_t max_heap_bytes = std::numeric_limits<std::uint64_t>::max();
     /// Finest level to decode: later ones are refused and no memory is kept for them.
     std::uint32_t max_level = std::numeric_limits<std::uint32_t>::max();
+    bool attributes = true;  ///< False: chunks of attributes are skipped.
 };
 
 /// One row of the index: a run of bytes that is decoded as a whole.

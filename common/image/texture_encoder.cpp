@@ -11,23 +11,50 @@
 #include "image/texture_plan.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
+#include <span>
 #include <utility>
 
 namespace vsplit::image {
 
 namespace {
 
-Result<void> measure(const Raster& raster, std::vector<TextureChunk>& chunks)
+/// Gives chunks between two measured ones errors that fall evenly with their bytes.
+void interpolate(std::span<TextureChunk> chunks, double error_before)
+{
+    std::size_t total = 0;
+    for (const TextureChunk& chunk : chunks)
+    {
+        total += chunk.payload.size();
+    }
+    const double error = chunks.back().squared_error;
+    std::size_t sent = 0;
+    for (TextureChunk& chunk : chunks.first(chunks.size() - 1))
+    {
+        sent += chunk.payload.size();
+        const double part = static_cast<double>(sent) / static_cast<double>(total);
+        chunk.squared_error = error_before + (error - error_before) * part;
+    }
+}
+
+Result<void> measure(const Raster& raster, std::span<TextureChunk> chunks, bool every_chunk)
 {
     TextureDecoder decoder;
-    for (TextureChunk& chunk : chunks)
+    double error_before = 0.0;
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < chunks.size(); ++i)
     {
-        VSPLIT_TRY(decoder.feed(chunk.payload));
+        VSPLIT_TRY(decoder.feed(chunks[i].payload));
+        const bool ends_layer = i + 1 == chunks.size() || chunks[i + 1].layer != chunks[i].layer;
+        if (!every_chunk && !ends_layer && i > 0)
+        {
+            continue;
+        }
         const auto picture = decoder.picture(kMaxTextureSide);
         VSPLIT_TRY(picture);
-        chunk.squared_error = mean_squared_error(*picture, raster);
+        chunks[i].squared_error = mean_squared_error(*picture, raster);
+        interpolate(chunks.subspan(first, i + 1 - first), error_before);
+        error_before = chunks[i].squared_error;
+        first = i + 1;
     }
     return {};
 }
@@ -59,7 +86,7 @@ Result<EncodedTexture> encode_texture(const Raster& source, const TextureOptions
              .channels = raster.channels},
         .chunks = cut_chunks(*coded, header, options.image),
     };
-    VSPLIT_TRY(measure(raster, result.chunks));
+    VSPLIT_TRY(measure(raster, result.chunks, options.measure_every_chunk));
     return result;
 }
 

@@ -21,8 +21,11 @@ struct TextureOptions
     double cheap_bits_per_pixel = 0.25;
     bool lossless = false;       ///< Exact (after scaling down); `psnr` does not count then.
     bool is_normal_map = false;  ///< Channels are directions, not a colour.
-    std::uint32_t preview_bytes = 1250;  ///< About the length of the first chunk.
+    std::uint32_t preview_bytes = 1400;  ///< About the length of the first chunk.
     double layer_ratio = 1.414;  ///< About how much longer each quality layer makes the prefix.
+    /// Measure TextureChunk::squared_error after every chunk, not only after every layer and between
+    /// those interpolate; several times slower for large images.
+    bool measure_every_chunk = false;
 };
 
 /// A part of an image.
@@ -47,7 +50,7 @@ struct EncodedTexture
 /// Codes an image as chunks of which every prefix shows it as well as its bytes allow.
 /// `raster`: 1 .. 4 channels. Preconditions: its pixels are as many as its size says, options in range.
 /// Errors: InputTooLarge for sides above kMaxTextureSide, Internal. Same input, same bytes.
-/// Cost: some 2 s a megapixel, mostly decoding the prefixes.
+/// Cost: some 2 s a megapixel, mostly decoding prefixes.
 /// Source: proto/TEXTURE_CHUNKS.md.
 [[nodiscard]] Result<EncodedTexture> encode_texture(
     const Raster& raster, const TextureOptions& options = {}

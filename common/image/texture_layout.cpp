@@ -61,7 +61,9 @@ Result<TextureHeader> read_texture_header(ByteReader& reader)
         .levels = static_cast<std::uint8_t>(*flags >> 4U),
         .layers = *layers,
     };
-    if (header.levels > kMaxTextureLevels || header.layers < 1 ||
+    const std::uint32_t longest = std::max(header.width, header.height);
+    if (header.levels > kMaxTextureLevels ||
+        group_of_side(shifted_up(longest, header.levels)) != 0 || header.layers < 1 ||
         header.layers > kMaxTextureLayers || (header.color_transform && header.channels < 3))
     {
         return fail(ErrorCode::BadChunk, "an image is coded in a way that does not exist");

@@ -13,7 +13,7 @@ namespace vsplit::image {
 namespace {
 
 /// Resolutions are halved until the longest side is at most this.
-constexpr std::uint32_t kCoarsestSide = 24;
+constexpr std::uint32_t kCoarsestSide = 48;
 
 /// Interpolated lengths tend to be a little short, decibels.
 constexpr double kInterpolationMargin = 0.2;

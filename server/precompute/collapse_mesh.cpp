@@ -12,8 +12,12 @@ constexpr std::uint32_t kMostValence = 0x7FFF'FFFFU;
 
 }  // namespace
 
-CollapseMesh::CollapseMesh(std::uint32_t vertex_count, std::span<const Triangle> triangles)
-    : faces_(triangles.size()), links_(vertex_count)
+CollapseMesh::CollapseMesh(
+    std::uint32_t vertex_count,
+    std::span<const Triangle> triangles,
+    std::span<const Triangle> wedges
+)
+    : faces_(triangles.size()), links_(vertex_count), wedges_(wedges.begin(), wedges.end())
 {
     for (std::size_t f = 0; f < triangles.size(); ++f)
     {
@@ -35,6 +39,7 @@ CollapseMesh::CollapseMesh(std::uint32_t vertex_count, std::span<const Triangle>
             links_[vertex(next(c))].boundary = 1;
         }
     });
+    mark_seams();
 }
 
 void CollapseMesh::link_opposites()
@@ -137,7 +142,7 @@ bool CollapseMesh::can_collapse(
             return false;
         }
     }
-    return !is_removed(removed);
+    return !is_removed(removed) && keeps_seams(removed, ring, kept);
 }
 
 void CollapseMesh::link(std::int32_t a, std::int32_t b)
@@ -161,6 +166,7 @@ void CollapseMesh::collapse(std::uint32_t removed, const OneRing& ring, std::siz
     const bool has_right = !ring.boundary || kept != 0;
     const std::int32_t left_corner = has_left ? ring.corner[kept] : -1;
     const std::int32_t right_corner = has_right ? ring.corner[(kept + degree - 1) % degree] : -1;
+    fold_wedges(ring, kept);
     for (std::size_t i = 0; i < ring.face_count; ++i)
     {
         Face& face = faces_[static_cast<std::size_t>(ring.corner[i] >> 2)];

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "codec/stream_encoder.h"
 #include "mesh/indexed_mesh.h"
 
 #include <array>
@@ -62,7 +63,12 @@ class CollapseMesh
 {
 public:
     /// Takes over a 2-manifold with boundary. `vertex_count`: vertices, all used by `triangles`.
-    CollapseMesh(std::uint32_t vertex_count, std::span<const Triangle> triangles);
+    /// `wedges`: by triangle the wedges at its corners, as split_wedges() makes them, or empty.
+    CollapseMesh(
+        std::uint32_t vertex_count,
+        std::span<const Triangle> triangles,
+        std::span<const Triangle> wedges = {}
+    );
 
     /// Walks the ring of a vertex. Result: false when it has more neighbours than OneRing::kMost.
     [[nodiscard]] bool ring(std::uint32_t vertex, OneRing& ring) const;
@@ -71,13 +77,40 @@ public:
     void collapse(std::uint32_t removed, const OneRing& ring, std::size_t kept);
 
     /// Tells whether folding the ring's centre into neighbour number `kept` keeps a manifold whose
-    /// vertices have at most `valence_limit` neighbours. Precondition: on a boundary ring `kept` is the
-    /// first or the last neighbour.
+    /// vertices have at most `valence_limit` neighbours, and its seams: see keeps_seams().
+    /// Precondition: on a boundary ring `kept` is the first or the last neighbour.
     /// Source: Dey, Edelsbrunner, Guha, Nekhayev, "Topology Preserving Edge Contraction", 1999 (link
     /// condition).
     [[nodiscard]] bool can_collapse(
         std::uint32_t removed, const OneRing& ring, std::size_t kept, std::uint32_t valence_limit
     ) const;
+
+    /// Tells whether folding the ring's centre into neighbour number `kept` keeps seams and charts: each
+    /// wedge of the centre goes on in one of its own of the kept vertex, seams neither join nor touch,
+    /// and no chart vanishes. Always true without wedges. Precondition: as can_collapse().
+    /// Source: Dey, Edelsbrunner, Guha, Nekhayev, "Topology Preserving Edge Contraction", 1999 (the link
+    /// condition of a subcomplex, which is what seams are).
+    [[nodiscard]] bool keeps_seams(std::uint32_t removed, const OneRing& ring, std::size_t kept)
+        const;
+
+    /// True when the mesh was given wedges.
+    [[nodiscard]] bool has_wedges() const { return !wedges_.empty(); }
+
+    /// True for vertices on a seam. A seam is an edge with different wedges on its two sides at one of
+    /// its ends at least; boundaries are none.
+    [[nodiscard]] bool is_on_seam(std::uint32_t vertex) const
+    {
+        return !on_seam_.empty() && on_seam_[vertex] != 0;
+    }
+
+    /// Wedge at a corner. Precondition: has_wedges().
+    [[nodiscard]] std::uint32_t wedge(std::int32_t c) const
+    {
+        return wedges_[static_cast<std::size_t>(c >> 2)][static_cast<std::size_t>(c & 3)];
+    }
+
+    /// Tells what a collapse will take away. Preconditions: has_wedges(), can_collapse().
+    [[nodiscard]] codec::SeamRecord seam_record(const OneRing& ring, std::size_t kept) const;
 
     /// True for vertices on the boundary.
     [[nodiscard]] bool is_boundary(std::uint32_t vertex) const
@@ -100,6 +133,9 @@ public:
         const std::int32_t across = opposite(corner);
         return across < 0 ? -1 : across >> 2;
     }
+
+    /// Corner across the edge opposite to a corner, or -1.
+    [[nodiscard]] std::int32_t corner_across(std::int32_t corner) const { return opposite(corner); }
 
     /// Vertex across the edge opposite to a corner. Precondition: face_across(corner) >= 0.
     [[nodiscard]] std::uint32_t vertex_across(std::int32_t corner) const
@@ -154,6 +190,12 @@ public:
     /// Copies the triangles that are left.
     [[nodiscard]] std::vector<Triangle> triangles() const;
 
+    /// Lists the numbers of the triangles that are left, in the order of triangles().
+    [[nodiscard]] std::vector<std::uint32_t> faces() const;
+
+    /// Copies the wedges of the triangles that are left, in the order of triangles(); empty without.
+    [[nodiscard]] std::vector<Triangle> wedges() const;
+
     /// Copies the vertices that are left, ascending.
     [[nodiscard]] std::vector<std::uint32_t> vertices() const;
 
@@ -195,11 +237,17 @@ private:
         face.opposite[static_cast<std::size_t>(c & 3)] = opposite;
     }
 
+    [[nodiscard]] bool is_seam(std::int32_t c) const;
+    [[nodiscard]] std::size_t seams_at(const OneRing& ring) const;
+    void mark_seams();
+    void fold_wedges(const OneRing& ring, std::size_t kept);
     void link_opposites();
     void link(std::int32_t a, std::int32_t b);
 
     std::vector<Face> faces_;
-    std::vector<Link> links_;  ///< By vertex.
+    std::vector<Link> links_;            ///< By vertex.
+    std::vector<Triangle> wedges_;       ///< By face the wedges at its corners; or empty.
+    std::vector<std::uint8_t> on_seam_;  ///< By vertex; empty without wedges.
 };
 
 }  // namespace vsplit::precompute

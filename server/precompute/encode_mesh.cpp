@@ -5,6 +5,7 @@
 #include "precompute/collapse_cost.h"
 #include "precompute/collapse_mesh.h"
 #include "precompute/concurrent_meter.h"
+#include "precompute/cut_copies.h"
 #include "precompute/half_edge_mesh.h"
 #include "precompute/level_builder.h"
 #include "precompute/level_errors.h"
@@ -45,9 +46,13 @@ struct Source
     GridMesh quantised;
     std::vector<Vector3> exact;  ///< Positions in grid units, not rounded.
     std::vector<std::uint32_t> stitches;
-    std::vector<std::uint8_t> locked;  ///< Vertices that are never removed; or empty.
+    std::vector<std::uint8_t> locked;  ///< Copies of cut vertices: always at home; or empty.
     std::vector<float> importance;
-    std::vector<float> weights;  ///< What the metric needs.
+    std::vector<float> weights;         ///< What the metric needs.
+    std::vector<Triangle> wedges;       ///< By triangle those at its corners; or empty.
+    std::vector<std::uint32_t> groups;  ///< By triangle; or empty.
+    std::vector<codec::AttributeInfo> attributes;
+    std::vector<std::vector<std::int32_t>> values;  ///< By attribute and wedge.
 };
 
 /// The collapse sequence.
@@ -55,23 +60,11 @@ struct Sequence
 {
     std::vector<LevelBatches> levels;
     std::vector<std::uint8_t> starts;  ///< By batch 1 when it may not join the level before it.
-    std::vector<Triangle> base;        ///< The triangles that it leaves.
+    std::vector<std::vector<codec::SeamRecord>> seams;  ///< By batch, if there are wedges.
+    std::vector<Triangle> base;                         ///< The triangles that it leaves.
+    std::vector<Triangle> base_wedges;
+    std::vector<std::uint32_t> base_faces;
 };
-
-/// Copies of a cut vertex stay where they are, otherwise the cut would open.
-std::vector<std::uint8_t> lock_copies(std::span<const std::uint32_t> stitches)
-{
-    std::vector<std::uint8_t> locked(stitches.size(), 0);
-    for (std::uint32_t v = 0; v < stitches.size(); ++v)
-    {
-        if (stitches[v] != v)
-        {
-            locked[v] = 1;
-            locked[stitches[v]] = 1;
-        }
-    }
-    return locked;
-}
 
 /// Called with every batch as soon as it is known.
 using BatchSink = std::function<void(const std::vector<codec::Collapse>&)>;
@@ -84,11 +77,12 @@ Sequence make_sequence(
 )
 {
     const auto vertex_count = static_cast<std::uint32_t>(source.exact.size());
-    CollapseMesh working(vertex_count, source.quantised.triangles);
+    CollapseMesh working(vertex_count, source.quantised.triangles, source.wedges);
     CollapseCost cost(
         options.metric, source.exact, working, std::move(source.weights), source.importance
     );
-    LevelBuilder builder(working, cost, source.exact, source.locked, options.threads);
+    LevelBuilder builder(working, cost, source.exact, {}, options.threads);
+    builder.fold_together(source.stitches);
     const std::size_t base = next_stop(options, 0, vertex_count);
     Sequence sequence;
     bool choosy = true;
@@ -108,6 +102,7 @@ Sequence make_sequence(
             take_batch(level);
             sequence.levels.push_back({std::move(level)});
             sequence.starts.push_back(arrived ? 1 : 0);
+            sequence.seams.push_back(builder.take_seams());
         }
         if (progress)
         {
@@ -121,6 +116,11 @@ Sequence make_sequence(
         choosy = choosy && !slow;
     }
     sequence.base = working.triangles();
+    if (working.has_wedges())
+    {
+        sequence.base_wedges = working.wedges();
+        sequence.base_faces = working.faces();
+    }
     return sequence;
 }
 
@@ -154,12 +154,23 @@ codec::StreamPlan make_plan(
     plan.mesh = &source.quantised;
     plan.base_triangles = std::move(sequence.base);
     plan.stitches = source.stitches;
+    plan.wedges = source.wedges;
+    plan.groups = source.groups;
+    plan.attributes = source.attributes;
+    plan.values = source.values;
+    plan.base_wedges = std::move(sequence.base_wedges);
+    plan.base_faces = std::move(sequence.base_faces);
+    std::size_t batch = sequence.seams.size();
     for (std::size_t level = 0; level < views.size(); ++level)
     {
         codec::PlannedLevel planned;
         if (level > 0)
         {
             planned.batches = sequence.levels[level - 1];  // the meter still reads them
+            for (std::size_t i = 0; i < planned.batches.size() && !source.wedges.empty(); ++i)
+            {
+                planned.seams.push_back(std::move(sequence.seams[--batch]));
+            }
         }
         planned.shift = views[level].shift;
         planned.displaced = views[level].displaced;
@@ -223,7 +234,7 @@ Result<Source> prepare(
     {
         vertex = place[vertex];
     }
-    source.locked = lock_copies(source.stitches);
+    source.locked = mark_copies(source.stitches);
     source.grid = make_grid(ordered.positions, options.position_bits);
     source.quantised = quantize(source.grid, ordered);
     source.exact.resize(ordered.positions.size());
@@ -318,6 +329,28 @@ Result<EncodedMesh> encode_source(
     return result;
 }
 
+/// Brings what is known of the faces into the order that prepare() brings them.
+Result<void> prepare_faces(const EncodeInput& input, Source& source)
+{
+    const std::size_t faces = input.mesh.triangles.size();
+    const bool fits = (input.wedges.empty() || input.wedges.size() == faces) &&
+                      (input.groups.empty() || input.groups.size() == faces);
+    if (!fits)
+    {
+        return fail(ErrorCode::UnsupportedInput, "wedges or groups are not those of the faces");
+    }
+    if (!input.wedges.empty() || !input.groups.empty())
+    {
+        const auto order =
+            triangle_order(input.mesh.triangles, locality_order(input.mesh.positions));
+        source.wedges = in_order(std::span<const Triangle>(input.wedges), order);
+        source.groups = in_order(std::span<const std::uint32_t>(input.groups), order);
+        source.attributes = input.attributes;
+        source.values = input.values;
+    }
+    return {};
+}
+
 }  // namespace
 
 Result<EncodedMesh> encode_mesh(
@@ -344,6 +377,18 @@ Result<EncodedMesh> encode_mesh(
     auto source = prepare(mesh, stitches, options);
     VSPLIT_TRY(source);
     mesh = {};
+    return encode_source(*source, options, progress, begin);
+}
+
+Result<EncodedMesh> encode_surface(
+    EncodeInput&& input, const EncodeOptions& options, const ProgressSink& progress
+)
+{
+    const auto begin = Clock::now();
+    auto source = prepare(input.mesh, input.stitches, options);
+    VSPLIT_TRY(source);
+    VSPLIT_TRY(prepare_faces(input, *source));
+    input = {};
     return encode_source(*source, options, progress, begin);
 }
 

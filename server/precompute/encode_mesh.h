@@ -32,6 +32,17 @@ struct EncodeOptions
     unsigned threads = 1;    ///< Worker threads, at least 1; the bytes do not depend on it.
 };
 
+/// A repaired mesh and what is known of its faces.
+struct EncodeInput
+{
+    IndexedMesh mesh;                     ///< As encode_mesh() takes it.
+    std::vector<std::uint32_t> stitches;  ///< As encode_mesh() takes them.
+    std::vector<Triangle> wedges;       ///< By triangle, as split_wedges() makes them; empty: none.
+    std::vector<std::uint32_t> groups;  ///< One number a triangle; empty: all in 0.
+    std::vector<codec::AttributeInfo> attributes;
+    std::vector<std::vector<std::int32_t>> values;  ///< By attribute and wedge the coded numbers.
+};
+
 /// Called now and then with the stage's name and its share done, 0 .. 1; from the encoding thread.
 using ProgressSink = std::function<void(std::string_view stage, double share)>;
 
@@ -77,6 +88,12 @@ struct EncodedMesh
     std::span<const std::uint32_t> stitches,
     const EncodeOptions& options,
     const ProgressSink& progress = {}
+);
+
+/// The same for a mesh with wedges: seams are kept at every level. Errors: also UnsupportedInput when
+/// there are not as many wedges or groups as triangles, though some.
+[[nodiscard]] Result<EncodedMesh> encode_surface(
+    EncodeInput&& input, const EncodeOptions& options, const ProgressSink& progress = {}
 );
 
 }  // namespace vsplit::precompute

@@ -73,14 +73,16 @@ std::vector<std::uint32_t> inverse_order(std::span<const std::uint32_t> order)
     return place;
 }
 
-IndexedMesh in_order(const IndexedMesh& mesh, std::span<const std::uint32_t> order)
+std::vector<std::uint32_t> triangle_order(
+    std::span<const Triangle> triangles, std::span<const std::uint32_t> order
+)
 {
     const std::vector<std::uint32_t> place = inverse_order(order);
     const auto smallest = [&](const Triangle& triangle) {
         return std::min({place[triangle[0]], place[triangle[1]], place[triangle[2]]});
     };
-    std::vector<std::uint32_t> next(mesh.positions.size() + 1, 0);
-    for (const Triangle& triangle : mesh.triangles)
+    std::vector<std::uint32_t> next(order.size() + 1, 0);
+    for (const Triangle& triangle : triangles)
     {
         ++next[smallest(triangle) + 1];
     }
@@ -88,13 +90,24 @@ IndexedMesh in_order(const IndexedMesh& mesh, std::span<const std::uint32_t> ord
     {
         next[v] += next[v - 1];
     }
+    std::vector<std::uint32_t> result(triangles.size());
+    for (std::uint32_t t = 0; t < triangles.size(); ++t)
+    {
+        result[next[smallest(triangles[t])]++] = t;
+    }
+    return result;
+}
+
+IndexedMesh in_order(const IndexedMesh& mesh, std::span<const std::uint32_t> order)
+{
+    const std::vector<std::uint32_t> place = inverse_order(order);
     IndexedMesh result;
     result.positions = in_order(std::span<const Point>(mesh.positions), order);
-    result.triangles.resize(mesh.triangles.size());
-    for (const Triangle& triangle : mesh.triangles)
+    result.triangles.reserve(mesh.triangles.size());
+    for (const std::uint32_t t : triangle_order(mesh.triangles, order))
     {
-        result.triangles[next[smallest(triangle)]++] = {
-            place[triangle[0]], place[triangle[1]], place[triangle[2]]};
+        const auto& [a, b, c] = mesh.triangles[t];
+        result.triangles.push_back({place[a], place[b], place[c]});
     }
     return result;
 }

@@ -22,7 +22,12 @@ namespace vsplit::precompute {
 /// `order`: a permutation of the vertices; indices in `mesh` are in range. Cost: linear.
 [[nodiscard]] IndexedMesh in_order(const IndexedMesh& mesh, std::span<const std::uint32_t> order);
 
-/// Brings one value a vertex into the given order; nothing stays nothing.
+/// Tells which triangle comes i-th when in_order() renumbers a mesh. The same arguments. Cost: linear.
+[[nodiscard]] std::vector<std::uint32_t> triangle_order(
+    std::span<const Triangle> triangles, std::span<const std::uint32_t> order
+);
+
+/// Brings one value a vertex, or whatever the order is of, into the given order; nothing stays nothing.
 template <typename Value>
 [[nodiscard]] std::vector<Value> in_order(
     std::span<const Value> values, std::span<const std::uint32_t> order

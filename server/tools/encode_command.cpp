@@ -1,9 +1,10 @@
 #include "commands.h"
 #include "core/file_io.h"
+#include "precompute/code_attributes.h"
 #include "precompute/encode_mesh.h"
 #include "precompute/keep_region.h"
-#include "precompute/mesh_io.h"
-#include "precompute/repair.h"
+#include "precompute/repair_surface.h"
+#include "precompute/surface_io.h"
 #include "progress_bar.h"
 #include "report.h"
 
@@ -11,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -18,6 +20,7 @@
 #include <string>
 #include <string_view>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace vsplit::tools {
@@ -26,6 +29,17 @@ namespace {
 using precompute::EncodedMesh;
 using precompute::EncodeOptions;
 using precompute::RepairedMesh;
+
+/// What --drop calls the kinds of attributes.
+constexpr std::array<std::pair<std::string_view, AttributeKind>, 4> kKinds{{
+    {"uv", AttributeKind::TexCoord},
+    {"normals", AttributeKind::Normal},
+    {"colors", AttributeKind::Color},
+    {"scalars", AttributeKind::Scalar},
+}};
+
+/// What it calls materials, groups and images.
+constexpr std::string_view kMaterials = "materials";
 
 struct EncodeArguments
 {
@@ -36,6 +50,9 @@ struct EncodeArguments
     std::vector<std::string> keep_regions;  ///< As they were written.
     std::string keep_mask;
     EncodeOptions options;
+    precompute::AttributeBits bits;
+    std::vector<std::string> drop;  ///< Names of kKinds, or "materials".
+    bool attributes = true;
     bool quiet = false;
 };
 
@@ -53,7 +70,10 @@ struct EncodeOutcome
     std::size_t input_vertices = 0;
     std::size_t input_faces = 0;
     std::size_t kept_vertices = 0;  ///< Marked by --keep-region and --keep-mask.
-    RepairedMesh repaired;
+    precompute::RepairedSurface surface;
+    Appearance appearance;
+    std::vector<SourceImage> images;
+    std::vector<std::string> dropped;  ///< What the input has and the stream has not.
     EncodedMesh encoded;
     ToolSeconds seconds;
 };
@@ -97,9 +117,9 @@ Json outcome_json(const EncodeArguments& arguments, const EncodeOutcome& outcome
         {"input",
          {{"vertices", outcome.input_vertices},
           {"faces", outcome.input_faces},
-          {"components", outcome.repaired.components},
-          {"boundary_edges", outcome.repaired.boundary_edges}}},
-        {"repair", repair_json(outcome.repaired.report)},
+          {"components", outcome.surface.repaired.components},
+          {"boundary_edges", outcome.surface.repaired.boundary_edges}}},
+        {"repair", repair_json(outcome.surface.repaired.report)},
         {"vertices", info.vertex_count},
         {"faces", info.face_count},
         {"position_bits", info.grid.bits},
@@ -123,13 +143,13 @@ void print_input(const EncodeArguments& arguments, const EncodeOutcome& outcome)
         outcome.input_vertices,
         outcome.input_faces
     );
-    std::printf("repair: %s\n", repair_in_words(outcome.repaired.report).c_str());
+    std::printf("repair: %s\n", repair_in_words(outcome.surface.repaired.report).c_str());
     std::printf(
         "encoding %zu vertices, %zu faces; components: %u, boundary edges: %u\n",
-        outcome.repaired.mesh.positions.size(),
-        outcome.repaired.mesh.triangles.size(),
-        outcome.repaired.components,
-        outcome.repaired.boundary_edges
+        outcome.surface.repaired.mesh.positions.size(),
+        outcome.surface.repaired.mesh.triangles.size(),
+        outcome.surface.repaired.components,
+        outcome.surface.repaired.boundary_edges
     );
     if (outcome.kept_vertices > 0)
     {
@@ -196,28 +216,60 @@ Result<std::vector<float>> find_importance(
     return importance;
 }
 
+/// Adds what is being done to an error.
+tl::unexpected<Error> cannot_encode(const EncodeArguments& arguments, Error error)
+{
+    error.message = "cannot encode " + arguments.input + ": " + error.message;
+    return tl::unexpected<Error>(std::move(error));
+}
+
+/// Takes out of a model what shall not be encoded.
+void leave_out(const EncodeArguments& arguments, precompute::SourceModel& model)
+{
+    const auto dropped = [&](std::string_view name) {
+        return !arguments.attributes ||
+               std::ranges::find(arguments.drop, name) != arguments.drop.end();
+    };
+    std::erase_if(model.surface.attributes, [&](const SurfaceAttribute& attribute) {
+        return std::ranges::any_of(kKinds, [&](const auto& kind) {
+            return kind.second == attribute.kind && dropped(kind.first);
+        });
+    });
+    if (dropped(kMaterials))
+    {
+        model.surface.groups.clear();
+        model.appearance = {};
+        model.images.clear();
+    }
+}
+
 /// Reads and repairs the input.
 Result<void> load(const EncodeArguments& arguments, EncodeOutcome& outcome)
 {
     Stopwatch watch;
-    const auto mesh = precompute::read_mesh(arguments.input);
-    VSPLIT_TRY(mesh);
+    auto model = precompute::read_surface(arguments.input);
+    VSPLIT_TRY(model);
     outcome.seconds.read = watch.lap();
-    outcome.input_vertices = mesh->positions.size();
-    outcome.input_faces = mesh->triangles.size();
-    const auto importance = find_importance(arguments, *mesh);
+    outcome.input_vertices = model->surface.mesh.positions.size();
+    outcome.input_faces = model->surface.mesh.triangles.size();
+    const auto importance = find_importance(arguments, model->surface.mesh);
     VSPLIT_TRY(importance);
     outcome.kept_vertices = static_cast<std::size_t>(
         std::ranges::count_if(*importance, [](float value) { return value > 0.0F; })
     );
-    auto repaired = precompute::repair_mesh(*mesh, *importance);
+    leave_out(arguments, *model);
+    auto repaired = precompute::repair_surface(model->surface, *importance);
     if (!repaired)
     {
-        Error error = repaired.error();
-        error.message = "cannot encode " + arguments.input + ": " + error.message;
-        return tl::unexpected<Error>(error);
+        return cannot_encode(arguments, repaired.error());
     }
-    outcome.repaired = std::move(*repaired);
+    outcome.surface = std::move(*repaired);
+    outcome.appearance = std::move(model->appearance);
+    outcome.images = std::move(model->images);
+    outcome.dropped = std::move(model->dropped);
+    outcome.dropped.insert(
+        outcome.dropped.end(), outcome.surface.dropped.begin(), outcome.surface.dropped.end()
+    );
     outcome.seconds.repair = watch.lap();
     return {};
 }
@@ -228,18 +280,20 @@ Result<void> encode(const EncodeArguments& arguments, bool speak, EncodeOutcome&
     Stopwatch watch;
     ProgressBar bar(speak);
     EncodeOptions options = arguments.options;
-    options.importance = std::move(outcome.repaired.importance);
-    auto encoded = precompute::encode_mesh(
-        std::move(outcome.repaired.mesh),
-        outcome.repaired.stitches,
+    options.importance = std::move(outcome.surface.repaired.importance);
+    auto input = precompute::make_encode_input(std::move(outcome.surface), arguments.bits);
+    if (!input)
+    {
+        return cannot_encode(arguments, input.error());
+    }
+    auto encoded = precompute::encode_surface(
+        std::move(*input),
         options,
         [&](std::string_view stage, double share) { bar.show(stage, share); }
     );
     if (!encoded)
     {
-        Error error = encoded.error();
-        error.message = "cannot encode " + arguments.input + ": " + error.message;
-        return tl::unexpected<Error>(error);
+        return cannot_encode(arguments, encoded.error());
     }
     outcome.encoded = std::move(*encoded);
     outcome.seconds.encode = watch.lap();
@@ -298,6 +352,35 @@ void add_level_flags(CLI::App& command, EncodeOptions& options)
     );
 }
 
+/// Adds what says how attributes are coded.
+void add_attribute_flags(CLI::App& command, EncodeArguments& arguments)
+{
+    const auto bits = [&](const char* name, std::uint8_t& value, const char* help) {
+        command.add_option(name, value, help)
+            ->check(CLI::Range(2, int{codec::kMaxAttributeBits}))
+            ->capture_default_str();
+    };
+    bits("--uv-bits", arguments.bits.tex_coord, "Bits of a texture coordinate");
+    bits("--normal-bits", arguments.bits.normal, "Bits of each of the two numbers of a normal");
+    bits("--color-bits", arguments.bits.color, "Bits of a colour's channel");
+    bits("--scalar-bits", arguments.bits.scalar, "Bits of any other number");
+    std::vector<std::string> names{std::string(kMaterials)};
+    for (const auto& [name, kind] : kKinds)
+    {
+        names.emplace_back(name);
+    }
+    command
+        .add_option(
+            "--drop", arguments.drop, "Leave out some of: uv, normals, colors, scalars, materials"
+        )
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::IsMember(names));
+    command.add_flag(
+        "--no-attributes{false}", arguments.attributes, "Encode the shape and nothing else"
+    );
+}
+
 }  // namespace
 
 void add_encode_command(CLI::App& app, Result<void>& result)
@@ -347,6 +430,7 @@ void add_encode_command(CLI::App& app, Result<void>& result)
     );
     constexpr unsigned kMostThreads = 256;
     add_level_flags(*command, options);
+    add_attribute_flags(*command, *arguments);
     command->add_option("--threads", options.threads, "Worker threads; do not change the result")
         ->check(CLI::Range(1U, kMostThreads))
         ->capture_default_str();

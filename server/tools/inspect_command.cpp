@@ -17,9 +17,9 @@ struct InspectArguments
     std::string json;
 };
 
-const char* kind_name(proto::ChunkKind kind)
+const char* kind_name(const codec::ChunkInfo& chunk)
 {
-    switch (kind)
+    switch (chunk.kind)
     {
         case proto::ChunkKind::Base:
             return "base";
@@ -27,8 +27,16 @@ const char* kind_name(proto::ChunkKind kind)
             return "batch";
         case proto::ChunkKind::Growth:
             return "growth";
+        case proto::ChunkKind::Parts:
+            return "parts";
         case proto::ChunkKind::Stitch:
             return "stitch";
+        case proto::ChunkKind::Attributes:
+            return chunk.codec == proto::kNormalsCodec ? "normals" : "attributes";
+        case proto::ChunkKind::Appearance:
+            return "appearance";
+        case proto::ChunkKind::Texture:
+            return "texture";
     }
     return "unknown";
 }
@@ -39,7 +47,7 @@ Json chunks_json(const codec::StreamInfo& info)
     for (const codec::ChunkInfo& chunk : info.chunks)
     {
         rows.push_back({
-            {"kind", kind_name(chunk.kind)},
+            {"kind", kind_name(chunk)},
             {"codec", chunk.codec},
             {"offset", chunk.offset},
             {"bytes", chunk.bytes},

@@ -2,6 +2,7 @@
 // scaled down by powers of two (and three quarters of them), at the best quality that fits, baseline
 // or progressive, chroma subsampled or not, scaled up bilinearly.
 // usage: texture_quality IMAGE...
+// VSPLIT_PSNR, VSPLIT_LAYER_RATIO and VSPLIT_LOSSLESS set options; VSPLIT_NO_JPEG leaves the search out.
 
 #include "core/error.h"
 #include "core/file_io.h"
@@ -134,7 +135,7 @@ double best_jpeg(const Raster& image, std::size_t budget)
 
 image::TextureOptions options_from_environment()
 {
-    image::TextureOptions options;
+    image::TextureOptions options{.measure_every_chunk = true};
     if (const char* ratio = std::getenv("VSPLIT_LAYER_RATIO"))
     {
         options.layer_ratio = std::atof(ratio);
