@@ -17,8 +17,9 @@ namespace {
 
 /// Shares of the bytes that geometry may take.
 constexpr std::array<double, 10> kShares{0.08, 0.15, 0.22, 0.3, 0.38, 0.47, 0.56, 0.66, 0.78, 0.9};
-/// Bits of positions and texture coordinates that are tried together.
-constexpr std::array<std::array<int, 2>, 5> kBits{{{9, 8}, {10, 9}, {11, 9}, {11, 10}, {12, 11}}};
+/// Bits of positions and texture coordinates that are tried together; images that repeat need many.
+constexpr std::array<std::array<int, 2>, 6> kBits{
+    {{9, 8}, {10, 9}, {11, 10}, {12, 11}, {12, 13}, {13, 12}}};
 constexpr double kLadderRatio = 0.93;
 constexpr std::size_t kFinalists = 4;
 

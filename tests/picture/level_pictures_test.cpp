@@ -3,6 +3,7 @@
 #include "picture/compare.h"
 #include "picture/cracks.h"
 #include "picture/decoded_surface.h"
+#include "precompute/code_attributes.h"
 #include "precompute/encode_mesh.h"
 #include "precompute/mesh_files.h"
 #include "precompute/repair_surface.h"
@@ -16,6 +17,7 @@
 #include <cstdio>
 #include <numbers>
 #include <thread>
+#include <utility>
 
 namespace vsplit::test {
 namespace {
@@ -35,22 +37,19 @@ struct EncodedModel
     std::vector<std::byte> file;
 };
 
-Result<EncodedModel> encode_surface(const Surface& source)
+Result<EncodedModel> encode_model(const Surface& source)
 {
     auto surface = precompute::repair_surface(source);
     VSPLIT_TRY(surface);
-    precompute::RepairedMesh& repaired = surface->repaired;
+    EncodedModel model;
+    model.original = {surface->repaired.mesh, surface->attributes, surface->groups};
+    model.stitches = surface->repaired.stitches;
+    auto input = precompute::make_encode_input(std::move(*surface), {});
+    VSPLIT_TRY(input);
     precompute::EncodeOptions options;
     options.threads = std::max(std::thread::hardware_concurrency(), 1U);
-    auto encoded = precompute::encode_mesh(repaired.mesh, repaired.stitches, options);
+    auto encoded = precompute::encode_surface(std::move(*input), options);
     VSPLIT_TRY(encoded);
-    EncodedModel model;
-    model.original.mesh = std::move(repaired.mesh);
-    if (!encoded->info.attributes.empty())
-    {
-        model.original.attributes = std::move(surface->attributes);
-    }
-    model.stitches = std::move(repaired.stitches);
     model.file = std::move(encoded->file);
     return model;
 }
@@ -127,6 +126,7 @@ void expect_good_pictures(const EncodedModel& model, const std::string& name)
         psnr[0],
         psnr[1]
     );
+    std::fflush(stdout);  // long runs are watched
     EXPECT_GT(psnr[1], kLeastPsnr) << name;
     EXPECT_GE(psnr[1], psnr[0]) << name;
 }
@@ -142,7 +142,7 @@ void expect_good_pictures_of(const std::vector<std::filesystem::path>& files)
         }
         const auto source = precompute::read_surface(file);
         ASSERT_TRUE(source) << file << ": " << source.error().message;
-        const auto model = encode_surface(source->surface);
+        const auto model = encode_model(source->surface);
         ASSERT_TRUE(model) << file << ": " << model.error().message;
         expect_good_pictures(*model, file.stem().string());
     }
@@ -184,7 +184,7 @@ TEST(LevelPictures, ShowNoCrackWhereRepairCut)
 {
     Surface band;
     band.mesh = moebius_band();
-    const auto model = encode_surface(band);
+    const auto model = encode_model(band);
     ASSERT_TRUE(model) << model.error().message;
     ASSERT_FALSE(model->stitches.empty());
     expect_good_pictures(*model, "moebius band");
@@ -194,7 +194,7 @@ TEST(LevelPictures, WouldShowCutCopiesThatMoveApart)
 {
     Surface band;
     band.mesh = moebius_band();
-    const auto model = encode_surface(band);
+    const auto model = encode_model(band);
     ASSERT_TRUE(model) << model.error().message;
     const picture::CrackDetector detector(
         model->original, picture::corner_views(model->original.mesh.positions), kSize
