@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto bytes = std::as_bytes(std::span(data, size));
     // Every external file has the bytes of the document itself.
     const precompute::ReadCompanion read = [&](std::string_view) {
-        return Result<std::vector<std::byte>>(std::in_place, bytes.begin(), bytes.end());
+        return Result<std::vector<std::byte>>(std::vector<std::byte>(bytes.begin(), bytes.end()));
     };
     const auto model = precompute::read_gltf_model(bytes, read);
     if (!model)

@@ -23,7 +23,7 @@ Result<precompute::SourceModel> read(std::uint8_t format, std::span<const std::b
         // Images start with 0x89 or 0xFF, libraries with what follows that.
         const bool library = name.ends_with(".mtl") && !rest.empty();
         const auto file = library ? rest.subspan(1) : rest;
-        return Result<std::vector<std::byte>>(std::in_place, file.begin(), file.end());
+        return Result<std::vector<std::byte>>(std::vector<std::byte>(file.begin(), file.end()));
     };
     if (format % 2 == 0)
     {
