@@ -122,8 +122,9 @@ public:
     /// for most); empty when nothing was cut or the stream is not complete.
     [[nodiscard]] std::span<const std::uint32_t> stitches() const;
 
-    /// Attributes as of the last step with attributes_complete; nullptr as long as there are none. They
-    /// fit the triangles of the level that they came with, until the next chunk changes these.
+    /// Attributes of the last level that has all of them; nullptr as long as there are none and while those
+    /// of a level come. They fit the triangles of the level that they came with, until the next chunk
+    /// changes these.
     [[nodiscard]] const LevelAttributes* attributes() const;
 
     /// Copies the mesh shown with its neighbours and the positions on the level's grid, in the order of

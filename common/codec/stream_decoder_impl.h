@@ -110,7 +110,9 @@ public:
     /// As StreamDecoder::attributes().
     const LevelAttributes* attributes() const
     {
-        return attributes_ && attributes_->has_level() ? &attributes_->shown() : nullptr;
+        return attributes_ && attributes_->has_level() && !attributes_->in_level()
+                   ? &attributes_->shown()
+                   : nullptr;
     }
 
     /// As StreamDecoder::level_mesh().

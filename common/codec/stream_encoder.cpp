@@ -300,14 +300,13 @@ private:
         const bool all_there = std::ranges::all_of(
             later, &std::vector<std::vector<Triangle>>::empty, &PlannedLevel::parts
         );
-        return may && all_there && !later.empty()
-                   ? growth_start(
-                         chunks_.bytes(),
-                         plan_vertices(),
-                         plan_.levels[level].shift,
-                         !plan_.wedges.empty()
-                     )
-                   : GrowthStart::Never;
+        return may && all_there && !later.empty() ? growth_start(
+                                                        chunks_.bytes(),
+                                                        plan_vertices(),
+                                                        plan_.levels[level].shift,
+                                                        !plan_.wedges.empty()
+                                                    )
+                                                  : GrowthStart::Never;
     }
 
     /// Makes a copy of this stream that goes on with the growth of the complete mesh; nothing when the

@@ -57,10 +57,15 @@ struct LevelInfo
     std::uint32_t level = 0;
     std::uint32_t vertices = 0;
     std::uint32_t faces = 0;
-    std::uint64_t chunk_bytes = 0;       ///< Bytes of its chunks; level 0 without the header.
-    std::uint64_t cumulative_bytes = 0;  ///< Length of the file prefix that shows this level.
-    double rms_error = 0.0;              ///< Model units.
-    double max_error = 0.0;              ///< Model units.
+    /// Bytes of its chunks, attributes included; level 0 without the header.
+    std::uint64_t chunk_bytes = 0;
+    std::uint64_t attribute_bytes = 0;  ///< Of these, chunks of attributes.
+    std::uint64_t other_bytes =
+        0;  ///< Chunks of materials and images between it and the next level.
+    /// Length of the file prefix that shows this level with its attributes.
+    std::uint64_t cumulative_bytes = 0;
+    double rms_error = 0.0;  ///< Model units.
+    double max_error = 0.0;  ///< Model units.
 };
 
 /// Everything the header and the index say, known before any mesh data arrives.
