@@ -168,6 +168,12 @@ Result<void> read_extent(BitDecoder& bits, StreamInfo& info)
 /// Counts an optional chunk with a level.
 void count_optional(const ChunkInfo& chunk, LevelInfo& level)
 {
+    const bool tells =
+        chunk.kind == proto::ChunkKind::Attributes || chunk.kind == proto::ChunkKind::Texture;
+    if (tells && picture_quality(chunk.tag) > 0.0)
+    {
+        level.picture_quality = picture_quality(chunk.tag);
+    }
     if (chunk.kind == proto::ChunkKind::Appearance || chunk.kind == proto::ChunkKind::Texture)
     {
         level.other_bytes += chunk.bytes;

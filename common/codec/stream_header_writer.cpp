@@ -284,7 +284,9 @@ Result<std::vector<std::byte>> replace_errors(
 }
 
 Result<std::vector<std::byte>> insert_chunks(
-    std::span<const std::byte> file, std::span<const ExtraChunk> extra
+    std::span<const std::byte> file,
+    std::span<const ExtraChunk> extra,
+    std::span<const std::uint32_t> tags
 )
 {
     auto info = parse_stream_info(file);
@@ -299,7 +301,8 @@ Result<std::vector<std::byte>> insert_chunks(
     };
     for (std::size_t i = 0; i < info->chunks.size(); ++i)
     {
-        const ChunkInfo& chunk = info->chunks[i];
+        ChunkInfo& chunk = info->chunks[i];
+        chunk.tag = tags.empty() ? chunk.tag : tags[i];
         append(chunk, file.subspan(chunk.offset, chunk.bytes));
         for (; !extra.empty() && extra.front().after <= i; extra = extra.subspan(1))
         {

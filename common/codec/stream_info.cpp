@@ -19,6 +19,14 @@ double StreamInfo::diagonal() const
     return std::sqrt(sum);
 }
 
+std::uint32_t with_picture_quality(std::uint32_t tag, double squared_error)
+{
+    constexpr double kMost = 63.75;
+    const double ratio = squared_error > 0.0 ? 10.0 * std::log10(65025.0 / squared_error) : kMost;
+    const auto steps = static_cast<std::uint32_t>(std::clamp(ratio, 0.25, kMost) * 4.0);
+    return (tag & ~(255U << 4U)) | steps << 4U;
+}
+
 Result<std::span<const std::byte>> chunk_contents(
     std::span<const std::byte> bytes, std::uint64_t offset
 )

@@ -14,7 +14,7 @@ namespace vsplit::image {
 /// How to code an image.
 struct TextureOptions
 {
-    std::uint32_t image = 0;        ///< Its index in Appearance::images, below 2^28.
+    std::uint32_t image = 0;        ///< Its index in Appearance::images, below 2^19.
     std::uint32_t max_size = 2048;  ///< Longest side, pixels; larger images are scaled down.
     double psnr = 40.0;             ///< Quality of all chunks together, decibels.
     double cheap_psnr = 48.0;  ///< Quality wanted as long as an image stays below the next number.

@@ -94,17 +94,18 @@ struct TextureTag
     friend bool operator==(const TextureTag&, const TextureTag&) = default;
 };
 
-/// Packs image number and group: image << 4 | log2 of the largest side that the group serves.
-/// Preconditions: `image` < 2^28, `group` < 8.
+/// Packs image number and group: image << 12 | log2 of the largest side that the group serves; the eight bits
+/// between are those of codec::picture_quality().
+/// Preconditions: `image` < 2^19, `group` < 8.
 [[nodiscard]] constexpr std::uint32_t texture_tag(std::uint32_t image, unsigned group)
 {
-    return image << 4U | (kFirstGroupLog + group);
+    return image << 12U | (kFirstGroupLog + group);
 }
 
 /// Unpacks a tag; any value is accepted.
 [[nodiscard]] constexpr TextureTag parse_texture_tag(std::uint32_t tag)
 {
-    return {.image = tag >> 4U, .side = 1U << (tag & 15U)};
+    return {.image = tag >> 12U, .side = 1U << (tag & 15U)};
 }
 
 /// True when a reader that shows images with sides of at most `max_size` pixels needs the chunk. Group

@@ -196,12 +196,16 @@ Result<std::vector<std::byte>> insert_appearance(
     const auto order = find_order(file, *info, original, appearance, textures);
     VSPLIT_TRY(order);
     const auto last = last_chunks(*info);
+    std::vector<std::uint32_t> tags(info->chunks.size());
+    std::ranges::transform(info->chunks, tags.begin(), &codec::ChunkInfo::tag);
     std::uint32_t level = 0;
     for (const OrderStep& step : order->steps)
     {
         if (step.image == OrderStep::kGeometry)
         {
             level = step.index;
+            std::uint32_t& tag = tags[last[level]];
+            tag = codec::with_picture_quality(tag, step.error);
             continue;
         }
         const auto& chunk =
@@ -209,11 +213,11 @@ Result<std::vector<std::byte>> insert_appearance(
         extra.push_back(
             {.after = last[level],
              .kind = proto::ChunkKind::Texture,
-             .tag = chunk.tag,
+             .tag = codec::with_picture_quality(chunk.tag, step.error),
              .bytes = chunk.payload}
         );
     }
-    return codec::insert_chunks(file, extra);
+    return codec::insert_chunks(file, extra, tags);
 }
 
 }  // namespace vsplit::precompute

@@ -71,6 +71,7 @@ Json levels_json(const codec::StreamInfo& info)
             {"chunk_bytes", level.chunk_bytes},
             {"attribute_bytes", level.attribute_bytes},
             {"image_bytes", level.other_bytes},
+            {"picture_psnr", level.picture_quality},
             {"cumulative_bytes", level.cumulative_bytes},
             {"rms_percent", percent(info, level.rms_error)},
             {"max_percent", percent(info, level.max_error)},
@@ -148,7 +149,7 @@ void print_levels(std::FILE* out, const codec::StreamInfo& info)
         "rms %",
         "max %",
         "bits/v",
-        more ? " attributes     images" : ""
+        more ? " attributes     images picture dB" : ""
     );
     for (const codec::LevelInfo& level : info.levels)
     {
@@ -168,9 +169,10 @@ void print_levels(std::FILE* out, const codec::StreamInfo& info)
         {
             std::fprintf(
                 out,
-                " %10llu %10llu",
+                " %10llu %10llu %10.2f",
                 static_cast<unsigned long long>(level.attribute_bytes),
-                static_cast<unsigned long long>(level.other_bytes)
+                static_cast<unsigned long long>(level.other_bytes),
+                level.picture_quality
             );
         }
         std::fputc('\n', out);

@@ -87,6 +87,7 @@ Level random_level(unsigned seed)
         info_of(AttributeKind::TexCoord, 0, 2),
         info_of(AttributeKind::TexCoord, 1, 2),
         info_of(AttributeKind::Color, 0, 4)};
+    level.infos.back().rgb = true;
     for (const codec::AttributeInfo& info : level.infos)
     {
         std::vector<std::int32_t> values;

@@ -276,7 +276,7 @@ TEST(TextureDecoder, ReadsGoldenChunks)
 TEST(TextureTag, SaysWhatAChunkIsFor)
 {
     static_assert(parse_texture_tag(texture_tag(3, 0)) == TextureTag{3, 256});
-    static_assert(parse_texture_tag(texture_tag((1U << 28U) - 1, 7)).side == 32768);
+    static_assert(parse_texture_tag(texture_tag((1U << 19U) - 1, 7)).side == 32768);
     EXPECT_TRUE(texture_chunk_wanted(texture_tag(1, 0), 64));
     EXPECT_TRUE(texture_chunk_wanted(texture_tag(1, 2), 1024));
     EXPECT_FALSE(texture_chunk_wanted(texture_tag(1, 2), 1023));
