@@ -29,6 +29,14 @@ constexpr double kShapeShare = 0.6;
 /// The same on the full grid: without a bit missing the surface is off by about a cell.
 constexpr double kGrowthBitsOnGrid = 1.2;
 
+/// A growth of so many times the prefix is short: as it is where a mesh of ten bits a vertex begins to grow.
+constexpr std::size_t kShortGrowth = 3;
+
+/// Larger meshes are not tried, which would take a tenth of the encoder's time; neither are prefixes that
+/// hardly show anything.
+constexpr std::uint32_t kTriedMesh = 20000;
+constexpr double kFewestTriedBits = 0.5;
+
 /// Share of the bytes that growing has to save: less is not worth that nothing shows meanwhile.
 constexpr std::size_t kSavesOneIn = 24;
 
@@ -43,7 +51,17 @@ GrowthStart growth_start(std::size_t bytes, std::uint32_t vertices, int shift, b
     {
         return GrowthStart::Now;
     }
-    return is_small && bits >= kFewestGrowthBits ? GrowthStart::IfNeeded : GrowthStart::Never;
+    if (is_small && bits >= kFewestGrowthBits)
+    {
+        return GrowthStart::IfNeeded;
+    }
+    return vertices < kTriedMesh && bits >= kFewestTriedBits ? GrowthStart::IfShort
+                                                             : GrowthStart::Never;
+}
+
+bool growth_is_short(std::size_t prefix, std::size_t growth)
+{
+    return growth <= kShortGrowth * prefix;
 }
 
 bool growth_pays(std::size_t grown, std::size_t split)

@@ -21,6 +21,7 @@ inline constexpr std::array<PredictionShares, 3> kPredictions{
 enum class GrowthStart : std::uint8_t
 {
     Never,     ///< A prefix shows too little.
+    IfShort,   ///< It would do if the rest is short beside it.
     IfNeeded,  ///< It would do, but more is better.
     Now,       ///< It shows enough.
 };
@@ -30,6 +31,10 @@ enum class GrowthStart : std::uint8_t
 [[nodiscard]] GrowthStart growth_start(
     std::size_t bytes, std::uint32_t vertices, int shift, bool has_attributes
 );
+
+/// Says whether a mesh is so regular that its growth is short beside the prefix: then little is lost while
+/// nothing new shows. `prefix`, `growth`: bytes.
+[[nodiscard]] bool growth_is_short(std::size_t prefix, std::size_t growth);
 
 /// Says whether growing makes a stream so much smaller than splits that nothing need show meanwhile.
 /// `grown`, `split`: bytes of the streams.

@@ -58,6 +58,10 @@ public:
         {
             VSPLIT_TRY(add_level(plan_.levels[level]));
             const GrowthStart start = start_of_growth(level);
+            if (start == GrowthStart::IfShort || start == GrowthStart::IfNeeded)
+            {
+                VSPLIT_TRY(grow_if_short(late));
+            }
             if (start == GrowthStart::IfNeeded && !early)
             {
                 VSPLIT_TRY(grow(early));
@@ -309,6 +313,22 @@ private:
                                                   : GrowthStart::Never;
     }
 
+    /// Tries to grow when the prefix is half as long again as at the last try; keeps what is short.
+    Result<void> grow_if_short(std::optional<StreamBuilder>& grown)
+    {
+        if (grown || 2 * chunks_.bytes() < 3 * tried_)
+        {
+            return {};
+        }
+        tried_ = chunks_.bytes();
+        VSPLIT_TRY(grow(grown));
+        if (grown && !growth_is_short(tried_, grown->chunks_.bytes() - tried_))
+        {
+            grown.reset();
+        }
+        return {};
+    }
+
     /// Makes a copy of this stream that goes on with the growth of the complete mesh; nothing when the
     /// mesh cannot grow.
     Result<void> grow(std::optional<StreamBuilder>& grown) const
@@ -399,7 +419,8 @@ private:
     ChunkList chunks_;
     std::array<std::int32_t, 3> extent_{};  ///< Largest index per axis.
     LevelCutter cutter_;
-    bool grown_ = false;  ///< The complete mesh was grown.
+    bool grown_ = false;     ///< The complete mesh was grown.
+    std::size_t tried_ = 0;  ///< Bytes of the prefix when growing was tried last.
 };
 
 }  // namespace
