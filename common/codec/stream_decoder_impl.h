@@ -198,7 +198,11 @@ private:
         Step step = current(StepKind::SkippedChunk);
         step.chunk_bytes = chunk.bytes;
         updates_.show({});
-        const auto done = decode_contents(chunk, *contents, step);
+        auto done = decode_contents(chunk, *contents, step);
+        if (done && next_ + 1 == info_->chunks.size() && attributes_ && !attributes_->settled())
+        {
+            done = fail(ErrorCode::BadChunk, "the stream ends within attributes");
+        }
         if (!done)
         {
             return fail(done.error().code, done.error().message, chunk.offset);
@@ -266,7 +270,11 @@ private:
         }
         if (!attributes_)
         {
-            attributes_ = std::make_unique<AttributeCoder>(info_->attributes);
+            attributes_ = std::make_unique<AttributeCoder>(
+                info_->attributes, WedgeCounts{info_->wedge_count, info_->vertex_count}
+            );
+            const StreamInfo last = prefix_info(*info_, limits_.max_level);
+            attributes_->reserve(last.vertex_count, last.face_count);
         }
         BitDecoder bits;
         VSPLIT_TRY(bits.start(bytes));
@@ -289,6 +297,7 @@ private:
             {
                 return fail(ErrorCode::BadChunk, "the attributes of a level come twice");
             }
+            attributes_->forget_mesh();
             VSPLIT_TRY(attributes_->begin_level(bits, level_mesh(), grown(), nullptr));
             attributed_level_ = level_ + 1ULL;
         }

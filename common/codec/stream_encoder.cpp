@@ -386,6 +386,7 @@ private:
         info.chunks = std::move(chunks_);
         info.content_checksum = content_checksum_;
         info.attributes = plan_.attributes;
+        info.wedge_count = count_wedges(plan_.wedges);
         std::vector<std::byte> file = write_stream_header(info, extent_);
         const auto payload = payload_.view();
         file.insert(file.end(), payload.begin(), payload.end());

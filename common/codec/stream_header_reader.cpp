@@ -130,6 +130,9 @@ Result<AttributeInfo> read_attribute(ByteReader reader)
 
 Result<void> read_attributes(ByteReader& reader, StreamInfo& info)
 {
+    const auto wedges = read_bounded(reader, 0, 3ULL * proto::kMaxFaces, "wedge count");
+    VSPLIT_TRY(wedges);
+    info.wedge_count = *wedges;
     const auto count = read_bounded(reader, 0, proto::kMaxAttributes, "attribute count");
     VSPLIT_TRY(count);
     for (std::uint32_t i = 0; i < *count; ++i)
@@ -277,6 +280,11 @@ Result<StreamInfo> parse_stream_info(std::span<const std::byte> prefix, const De
         return fail(ErrorCode::BadHeader, "the index does not end where the header does");
     }
     VSPLIT_TRY(collect_levels(info));
+    if (*has_attributes &&
+        (info.wedge_count < info.vertex_count || info.wedge_count > 3ULL * info.face_count))
+    {
+        return fail(ErrorCode::BadHeader, "the header's wedge count does not fit the mesh");
+    }
     if (decoder_heap_bytes(prefix_info(info, limits.max_level)) > limits.max_heap_bytes)
     {
         return fail(ErrorCode::LimitExceeded, "decoding would need more memory than allowed");

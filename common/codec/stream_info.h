@@ -5,6 +5,7 @@
 #include "format.h"
 #include "mesh/quantization_grid.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -83,10 +84,25 @@ struct StreamInfo
     std::vector<ChunkInfo> chunks;          ///< In file order.
     std::vector<LevelInfo> levels;          ///< Level 0 first.
     std::vector<AttributeInfo> attributes;  ///< Empty when the stream has none.
+    std::uint32_t wedge_count = 0;  ///< Most wedges of the last level; 0 without attributes.
 
     /// Length of the bounding-box diagonal, model units.
     [[nodiscard]] double diagonal() const;
 };
+
+/// What a stream says of the size of its complete mesh.
+struct WedgeCounts
+{
+    std::uint32_t wedges = 0;
+    std::uint32_t vertices = 0;
+};
+
+/// Most wedges of a level that has `vertices` vertices, since every vertex to come has one at least.
+[[nodiscard]] inline std::uint32_t most_wedges(const WedgeCounts& counts, std::uint32_t vertices)
+{
+    const std::uint32_t others = counts.vertices - std::min(vertices, counts.vertices);
+    return counts.wedges - std::min(others, counts.wedges);
+}
 
 /// When to stop reading; unset members do not matter, the first one met stops.
 struct StopCondition

@@ -21,6 +21,10 @@ std::string describe_meshes(const Decoded& decoded)
     for (const Snapshot& level : decoded.levels)
     {
         text += describe_level(level.level, level.shift, level.mesh);
+        for (const ShownAttributes& shown : decoded.attributes)
+        {
+            text += shown.level == level.level ? describe_attributes(shown.attributes) : "";
+        }
     }
     return text + describe_stitches(decoded.stitches);
 }

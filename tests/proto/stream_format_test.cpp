@@ -1,3 +1,4 @@
+#include "codec/attribute_coder.h"
 #include "codec/batch_coder.h"
 #include "codec/context_model.h"
 #include "codec/error_scale.h"
@@ -82,6 +83,21 @@ unsigned long table_crc(const Table& table)
     return crc32c(bytes.view());
 }
 
+/// Probabilities of the initial residual models, as the document lists them.
+std::vector<std::uint16_t> initial_residuals()
+{
+    std::vector<std::uint16_t> table;
+    for (const IntegerModel& model : detail::kInitialResiduals)
+    {
+        table.push_back(model.nonzero.probability);
+        for (const AdaptiveBit& bit : model.prefix)
+        {
+            table.push_back(bit.probability);
+        }
+    }
+    return table;
+}
+
 TEST(StreamFormatDocument, GivesTheConstantsOfTheCode)
 {
     using namespace proto;
@@ -96,12 +112,18 @@ TEST(StreamFormatDocument, GivesTheConstantsOfTheCode)
         {"kMaxFaces", kMaxFaces},
         {"kMaxChunks", kMaxChunks},
         {"kMaxLevels", kMaxLevels},
+        {"kMaxAttributes", kMaxAttributes},
+        {"kMaxGroups", kMaxGroups},
+        {"kMaxAttributeBits", kMaxAttributeBits},
         {"kMaxHeaderBytes", kMaxHeaderBytes},
         {"kTargetChunkBytes", kTargetChunkBytes},
         {"kChunkChecksumBytes", kChunkChecksumBytes},
         {"kSinglePrecisionGrid", kSinglePrecisionGrid},
         {"kHasAttributes", kHasAttributes},
+        {"kRgbColor", kRgbColor},
         {"kFirstOptionalChunkKind", kFirstOptionalChunkKind},
+        {"kValuesCodec", kValuesCodec},
+        {"kNormalsCodec", kNormalsCodec},
         {"kDracoBaseCodec", kDracoBaseCodec},
         {"kSmallBaseCodec", kSmallBaseCodec},
         {"kMaxSmallBaseVertices", kMaxSmallBaseVertices},
@@ -135,7 +157,11 @@ TEST(StreamFormatDocument, NamesEveryChunkKindWithItsNumber)
         {"Base", static_cast<unsigned long>(proto::ChunkKind::Base)},
         {"Batch", static_cast<unsigned long>(proto::ChunkKind::Batch)},
         {"Growth", static_cast<unsigned long>(proto::ChunkKind::Growth)},
+        {"Parts", static_cast<unsigned long>(proto::ChunkKind::Parts)},
         {"Stitch", static_cast<unsigned long>(proto::ChunkKind::Stitch)},
+        {"Attributes", static_cast<unsigned long>(proto::ChunkKind::Attributes)},
+        {"Appearance", static_cast<unsigned long>(proto::ChunkKind::Appearance)},
+        {"Texture", static_cast<unsigned long>(proto::ChunkKind::Texture)},
     };
     const std::string row = R"(\| (\d+) \| `(\w+)` \| (?:yes|no) \|)";
     EXPECT_EQ(numbers(read_document("Constants"), row, 2, 1), expected);
@@ -159,6 +185,7 @@ TEST(StreamFormatDocument, GivesTheChecksumsOfTheTables)
         {"kLogSum", table_crc(detail::kLogSum)},
         {"kAdaptation", table_crc(detail::kAdaptation)},
         {"kErrorSteps", table_crc(kErrorSteps)},
+        {"kInitialResiduals", table_crc(initial_residuals())},
         {"kPacked", table_crc(pack_model(std::span(&initial, 1)))},
     };
     const Numbers sizes{
@@ -166,6 +193,7 @@ TEST(StreamFormatDocument, GivesTheChecksumsOfTheTables)
         {"kLogSum", detail::kLogSum.size()},
         {"kAdaptation", detail::kAdaptation.size()},
         {"kErrorSteps", kErrorSteps.size()},
+        {"kInitialResiduals", initial_residuals().size()},
         {"kPacked", pack_model(std::span(&initial, 1)).size()},
     };
     const std::string row = R"(\n\| `(k\w+)` \| (\d+) \| \w+ \| (0x[0-9a-f]{8}) \|)";

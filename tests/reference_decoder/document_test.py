@@ -11,6 +11,7 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 import bits
+from attributes import initial_residuals
 from decode import PROTO, Decoder, packed_model, show_level
 
 DOCUMENT = (PROTO / "STREAM_FORMAT.md").read_text(encoding="utf-8")
@@ -54,6 +55,7 @@ class DocumentTest(unittest.TestCase):
             "kLogSum": struct.pack("<1024h", *bits.LOG_SUM),
             "kAdaptation": struct.pack("<128H", *bits.ADAPTATION),
             "kErrorSteps": struct.pack("<8d", *steps),
+            "kInitialResiduals": initial_residuals(),
             "kPacked": packed_model(),
         }
         rows = re.findall(r"\n\| `(k\w+)` \| \d+ \| \w+ \| 0x([0-9a-f]{8}) \|", DOCUMENT)
