@@ -82,7 +82,7 @@ private:
         }
         if (fan_.closed && start != corners.end())
         {
-            std::ranges::rotate(corners, start);
+            std::rotate(corners.begin(), start, corners.end());
         }
     }
 
