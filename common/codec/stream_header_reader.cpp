@@ -11,6 +11,7 @@
 #include <cmath>
 #include <iterator>
 #include <string>
+#include <utility>
 
 namespace vsplit::codec {
 namespace {
@@ -285,7 +286,9 @@ Result<StreamInfo> parse_stream_info(std::span<const std::byte> prefix, const De
     {
         return fail(ErrorCode::BadHeader, "the header's wedge count does not fit the mesh");
     }
-    if (decoder_heap_bytes(prefix_info(info, limits.max_level)) > limits.max_heap_bytes)
+    StreamInfo used = prefix_info(info, limits.max_level);
+    used = limits.attributes ? std::move(used) : without_attributes(std::move(used));
+    if (decoder_heap_bytes(used) > limits.max_heap_bytes)
     {
         return fail(ErrorCode::LimitExceeded, "decoding would need more memory than allowed");
     }

@@ -79,6 +79,14 @@ StreamInfo prefix_info(const StreamInfo& info, std::uint32_t level)
     return prefix;
 }
 
+StreamInfo without_attributes(StreamInfo info)
+{
+    std::erase_if(info.chunks, [](const ChunkInfo& chunk) {
+        return chunk.kind == proto::ChunkKind::Attributes;
+    });
+    return info;
+}
+
 LargestChunk largest_chunk(const StreamInfo& info)
 {
     LargestChunk largest;
@@ -143,8 +151,8 @@ std::uint64_t attribute_heap_bytes(const StreamInfo& info)
     const std::uint64_t lasting =
         40 * faces + 16 * vertices + (8 + 4 * numbers + 8 * normals) * wedges;
     // Then, while the level's wedges are coded, per face the new ones, per vertex its fan, whether seams go
-    // on there, and the longest of all fans.
-    const std::uint64_t finding = 12 * faces + 24 * vertices;
+    // on there, and the longest of all fans, which may be that of a hub.
+    const std::uint64_t finding = 12 * faces + 32 * vertices;
     // Or, while values are, per face the corners of wedges, per wedge its corners, its turn, and the size of
     // the residuals; those of normals know deviations, too.
     const std::uint64_t sizes = std::max<std::uint64_t>(4 * numbers, normals > 0 ? 16 : 0);

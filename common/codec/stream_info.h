@@ -152,6 +152,9 @@ struct StopCondition
 /// later levels are left out. A level beyond the last gives `info` itself. Cost: linear in the index.
 [[nodiscard]] StreamInfo prefix_info(const StreamInfo& info, std::uint32_t level);
 
+/// Returns what header and index would say without chunks of attributes, as for a decoder that skips them.
+[[nodiscard]] StreamInfo without_attributes(StreamInfo info);
+
 /// What of a stream's chunks is the largest.
 struct LargestChunk
 {
@@ -174,7 +177,8 @@ struct RefinedCounts
 [[nodiscard]] RefinedCounts refined_counts(const StreamInfo& info);
 
 /// Returns an upper bound of the heap that a StreamDecoder needs for the whole stream, bytes; for a
-/// decoder with DecodeLimits::max_level ask with prefix_info().
+/// decoder with DecodeLimits::max_level ask with prefix_info(), for one that skips attributes with
+/// without_attributes().
 [[nodiscard]] std::uint64_t decoder_heap_bytes(const StreamInfo& info);
 
 }  // namespace vsplit::codec

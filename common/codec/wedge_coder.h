@@ -61,11 +61,7 @@ public:
         {
             return fill_without_seams();
         }
-        KnownWedgeCoder<Coder> known(work_);
-        for (std::uint32_t v = 0; v < work_.old; ++v)
-        {
-            VSPLIT_TRY(known.code(v));
-        }
+        VSPLIT_TRY(code_known());
         VSPLIT_TRY(follow_seams());
         for (std::uint32_t v = work_.old; v < work_.state.first_wedge.size(); ++v)
         {
@@ -99,6 +95,16 @@ private:
                 }
             }
         }
+    }
+
+    [[nodiscard]] Result<void> code_known()
+    {
+        KnownWedgeCoder<Coder> known(work_);
+        for (std::uint32_t v = 0; v < work_.old; ++v)
+        {
+            VSPLIT_TRY(known.code(v));
+        }
+        return {};
     }
 
     [[nodiscard]] bool has_seams()

@@ -9,6 +9,7 @@
 #include "core/crc32c.h"
 #include "core/error.h"
 #include "format.h"
+#include "initial_residuals.h"
 
 #include <gtest/gtest.h>
 
@@ -81,21 +82,6 @@ unsigned long table_crc(const Table& table)
         }
     }
     return crc32c(bytes.view());
-}
-
-/// Probabilities of the initial residual models, as the document lists them.
-std::vector<std::uint16_t> initial_residuals()
-{
-    std::vector<std::uint16_t> table;
-    for (const IntegerModel& model : detail::kInitialResiduals)
-    {
-        table.push_back(model.nonzero.probability);
-        for (const AdaptiveBit& bit : model.prefix)
-        {
-            table.push_back(bit.probability);
-        }
-    }
-    return table;
 }
 
 TEST(StreamFormatDocument, GivesTheConstantsOfTheCode)
@@ -185,7 +171,7 @@ TEST(StreamFormatDocument, GivesTheChecksumsOfTheTables)
         {"kLogSum", table_crc(detail::kLogSum)},
         {"kAdaptation", table_crc(detail::kAdaptation)},
         {"kErrorSteps", table_crc(kErrorSteps)},
-        {"kInitialResiduals", table_crc(initial_residuals())},
+        {"kInitialResiduals", table_crc(test::initial_residuals())},
         {"kPacked", table_crc(pack_model(std::span(&initial, 1)))},
     };
     const Numbers sizes{
@@ -193,7 +179,7 @@ TEST(StreamFormatDocument, GivesTheChecksumsOfTheTables)
         {"kLogSum", detail::kLogSum.size()},
         {"kAdaptation", detail::kAdaptation.size()},
         {"kErrorSteps", kErrorSteps.size()},
-        {"kInitialResiduals", initial_residuals().size()},
+        {"kInitialResiduals", test::initial_residuals().size()},
         {"kPacked", pack_model(std::span(&initial, 1)).size()},
     };
     const std::string row = R"(\n\| `(k\w+)` \| (\d+) \| \w+ \| (0x[0-9a-f]{8}) \|)";
