@@ -9,7 +9,7 @@ namespace vsplit::proto {
 
 inline constexpr std::uint32_t kStreamMagic = 0x54505356;  ///< "VSPT", little-endian.
 inline constexpr std::uint8_t kStreamMajor = 0;
-inline constexpr std::uint8_t kStreamMinor = 3;
+inline constexpr std::uint8_t kStreamMinor = 4;
 
 /// Bytes from which the header's length is known: magic, version, and a length of four bytes.
 inline constexpr std::size_t kHeaderProbeBytes = 9;

@@ -8,6 +8,7 @@
 #include "codec/group_coder.h"
 #include "codec/level_mesh.h"
 #include "codec/normal_coder.h"
+#include "codec/stream_info.h"
 #include "codec/value_coder.h"
 #include "codec/wedge_coder.h"
 #include "core/result.h"
@@ -49,9 +50,31 @@ class AttributeCoder
 {
 public:
     /// `attributes`: those of the stream; must outlive this.
-    explicit AttributeCoder(std::span<const AttributeInfo> attributes) : attributes_(attributes)
+    AttributeCoder(std::span<const AttributeInfo> attributes, const WedgeCounts& counts)
+        : attributes_(attributes), counts_(counts)
     {
-        state_.value_models.resize(attributes.size());
+        state_.shown.values.resize(attributes.size());
+        for (const AttributeInfo& info : attributes)
+        {
+            state_.value_models.emplace_back(
+                info.kind == AttributeKind::Normal ? 0 : info.components
+            );
+        }
+    }
+
+    /// Takes the memory for a level's wedges at once. `vertices`, `faces`: of the finest level to come.
+    void reserve(std::uint32_t vertices, std::uint32_t faces)
+    {
+        faces_ = faces;
+        const std::size_t wedges = most_wedges(counts_, vertices);
+        state_.first_wedge.reserve(vertices);
+        state_.next_wedge.reserve(wedges);
+        state_.shown.wedge_vertices.reserve(wedges);
+        for (std::size_t a = 0; a < attributes_.size(); ++a)
+        {
+            const bool later = attributes_[a].kind == AttributeKind::Normal;
+            state_.shown.values[a].reserve(later ? 0 : wedges * attributes_[a].components);
+        }
     }
 
     /// Attributes of the last level that was completed.
@@ -65,6 +88,10 @@ public:
 
     /// Values of the level that are left to code.
     [[nodiscard]] std::uint32_t left() const { return values_->left(); }
+
+    /// Frees the copy of the level's mesh. Precondition: not in_level(); code_normals() is not called before
+    /// the next begin_level().
+    void forget_mesh() { mesh_ = {}; }
 
     /// Starts on a level: codes its wedges and groups. `mesh`: of the level; `replaced`: its triangles have
     /// nothing to do with those of the level before; `source`: encoder only.
@@ -86,9 +113,12 @@ public:
         }
         const std::size_t kept = replaced ? 0 : state_.shown.wedges.size();
         WedgeSource* const wedges = Coder::kEncodes ? &source->wedges : nullptr;
-        VSPLIT_TRY(WedgeCoder<Coder>(coder, mesh_, state_, replaced, wedges).run());
+        const std::uint32_t most =
+            most_wedges(counts_, static_cast<std::uint32_t>(mesh_.positions.size()));
+        VSPLIT_TRY(WedgeCoder<Coder>(coder, mesh_, state_, replaced, most, wedges).run());
         if (groups_ > 1)
         {
+            state_.shown.groups.reserve(faces_);
             std::span<const std::uint32_t> wanted;
             if constexpr (Coder::kEncodes)
             {
@@ -181,6 +211,9 @@ public:
     /// True unless normals of an attribute are begun and not complete.
     [[nodiscard]] bool normals_complete() const { return !normals_; }
 
+    /// True when nothing is begun that is not complete.
+    [[nodiscard]] bool settled() const { return !in_level() && normals_complete(); }
+
     /// Bytes that the first normals of the attribute begun take in a style. Precondition: next_normals().
     [[nodiscard]] Result<std::size_t> try_normals(std::uint32_t count, const NormalStyle& style)
         const
@@ -215,6 +248,7 @@ private:
     }
 
     std::span<const AttributeInfo> attributes_;
+    WedgeCounts counts_;
     AttributeState state_;
     LevelMesh mesh_;
     std::unique_ptr<ValueCoder> values_;
@@ -224,6 +258,7 @@ private:
     std::vector<std::vector<std::int32_t>> wanted_;  ///< Encoder only: by attribute and wedge.
     std::uint32_t levels_ = 0;
     std::uint32_t groups_ = 1;
+    std::uint32_t faces_ = 0;  ///< For which memory is taken.
 };
 
 }  // namespace vsplit::codec

@@ -78,11 +78,11 @@ struct WedgeModel
 struct ValueModel
 {
     AdaptiveBit same_value{};  ///< As another wedge of the vertex.
-    std::array<std::array<IntegerModel, kResidualContexts>, 4> residual{
-        detail::kInitialResiduals,
-        detail::kInitialResiduals,
-        detail::kInitialResiduals,
-        detail::kInitialResiduals};
+    /// By number of a value.
+    std::vector<std::array<IntegerModel, kResidualContexts>> residual;
+
+    /// The initial state of a model for values of `numbers` numbers.
+    explicit ValueModel(std::size_t numbers) : residual(numbers, detail::kInitialResiduals) {}
 };
 
 /// Everything that lasts from one level's attributes to the next.

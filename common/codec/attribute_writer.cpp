@@ -47,7 +47,7 @@ class SeamReplay
 public:
     explicit SeamReplay(const StreamPlan& plan)
         : plan_(plan),
-          wedge_vertex_(count_wedges(plan)),
+          wedge_vertex_(count_wedges(plan.wedges)),
           parent_(wedge_vertex_.size()),
           gone_(plan.wedges.size(), 0)
     {
@@ -96,16 +96,6 @@ public:
     [[nodiscard]] std::size_t wedge_count() const { return parent_.size(); }
 
 private:
-    static std::size_t count_wedges(const StreamPlan& plan)
-    {
-        std::size_t count = 0;
-        for (const Triangle& triangle : plan.wedges)
-        {
-            count = std::max<std::size_t>(count, std::ranges::max(triangle) + std::size_t{1});
-        }
-        return count;
-    }
-
     /// Drops a face whose wedge at corner `removed` continues in that of the kept vertex, corner 0.
     void vanish(const SeamRecord& record, std::size_t side, std::size_t removed)
     {
@@ -158,7 +148,13 @@ public:
         const StreamPlan& plan,
         std::span<const std::uint32_t> sources
     )
-        : file_(file), plan_(plan), sources_(sources), coder_(plan.attributes)
+        : file_(file),
+          plan_(plan),
+          sources_(sources),
+          coder_(
+              plan.attributes,
+              {count_wedges(plan.wedges), static_cast<std::uint32_t>(plan.mesh->positions.size())}
+          )
     {
     }
 
@@ -332,6 +328,16 @@ private:
 };
 
 }  // namespace
+
+std::uint32_t count_wedges(std::span<const Triangle> wedges)
+{
+    std::uint32_t count = 0;
+    for (const Triangle& triangle : wedges)
+    {
+        count = std::max(count, std::ranges::max(triangle) + 1);
+    }
+    return count;
+}
 
 Result<std::vector<ExtraChunk>> code_attributes(
     std::span<const std::byte> file, const StreamPlan& plan, std::span<const std::uint32_t> sources

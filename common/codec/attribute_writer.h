@@ -11,6 +11,9 @@
 
 namespace vsplit::codec {
 
+/// Number of wedges of a mesh. `wedges`: by triangle those at its corners, 0 .. W - 1. Cost: linear.
+[[nodiscard]] std::uint32_t count_wedges(std::span<const Triangle> wedges);
+
 /// Codes the attributes of every level of a finished stream of geometry.
 /// `file`: the stream; `plan`: what it was made of; `sources`: by vertex of the stream its vertex in the
 /// plan. Result: the chunks, in order. Error: Internal when stream and plan contradict each other.

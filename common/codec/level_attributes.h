@@ -24,7 +24,7 @@ struct AttributeInfo
     std::uint8_t bits = 10;       ///< Of a coded number, 1 .. 16.
     /// Colours only: coded as red, green and blue, not as brightness and two differences.
     bool rgb = false;
-    std::string name;
+    std::string name{};
     std::array<float, 4> origin{};  ///< By component the value of 0; not used by normals.
     float cell = 1.0F;              ///< Step of a value, > 0; not used by normals.
 };

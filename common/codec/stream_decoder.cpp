@@ -35,7 +35,7 @@ Step StreamDecoder::Impl::skip()
     if (step.chunk->kind == proto::ChunkKind::Attributes)
     {
         // Later ones build on it.
-        attributes_.reset();
+        attributes_ = {};
         limits_.attributes = false;
     }
     decoded_ += step.chunk->bytes;
@@ -86,12 +86,12 @@ std::uint32_t StreamDecoder::level() const
 
 std::uint32_t StreamDecoder::vertices() const
 {
-    return impl_->vertices();
+    return impl_->shown().vertices();
 }
 
 std::uint32_t StreamDecoder::faces() const
 {
-    return impl_->faces();
+    return impl_->shown().faces();
 }
 
 int StreamDecoder::shift() const
@@ -103,10 +103,11 @@ void StreamDecoder::write_positions(std::uint32_t first, std::uint32_t count, st
     const
 {
     VSPLIT_ASSERT(std::uint64_t{first} + count <= vertices() && out.size() >= 3ULL * count);
+    const ShownMesh mesh = impl_->shown();
     for (std::uint32_t i = 0; i < count; ++i)
     {
         const auto point =
-            dequantize(impl_->info_->grid, impl_->grid_position(first + i), impl_->state_.shift);
+            dequantize(impl_->info_->grid, mesh.position(first + i), impl_->state_.shift);
         for (std::size_t axis = 0; axis < 3; ++axis)
         {
             out[3ULL * i + axis] = static_cast<float>(point[axis]);
@@ -116,13 +117,13 @@ void StreamDecoder::write_positions(std::uint32_t first, std::uint32_t count, st
 
 std::array<std::int32_t, 3> StreamDecoder::grid_position(std::uint32_t vertex) const
 {
-    return impl_->grid_position(vertex);
+    return impl_->shown().position(vertex);
 }
 
 void StreamDecoder::write_triangles(std::span<Triangle> out) const
 {
     VSPLIT_ASSERT(out.size() >= faces());
-    impl_->write_triangles(out);
+    impl_->shown().write_triangles(out);
 }
 
 std::span<const std::uint32_t> StreamDecoder::stitches() const
@@ -138,7 +139,7 @@ const LevelAttributes* StreamDecoder::attributes() const
 
 LevelMesh StreamDecoder::level_mesh() const
 {
-    return impl_->level_mesh();
+    return impl_->shown().copy();
 }
 
 }  // namespace vsplit::codec

@@ -2,12 +2,13 @@
 
 // The inside of StreamDecoder; included by stream_decoder.cpp alone.
 
-#include "codec/attribute_coder.h"
+#include "codec/attribute_chunks.h"
 #include "codec/base_mesh_decoder.h"
 #include "codec/batch_coder.h"
 #include "codec/entropy_coder.h"
 #include "codec/growth_coder.h"
 #include "codec/index_reader.h"
+#include "codec/shown_mesh.h"
 #include "codec/split_updates.h"
 #include "codec/stitch_coder.h"
 #include "codec/stream_decoder.h"
@@ -76,43 +77,13 @@ public:
     /// As StreamDecoder::complete().
     bool complete() const { return info_ && next_ == info_->chunks.size(); }
 
-    /// As StreamDecoder::vertices().
-    std::uint32_t vertices() const
-    {
-        return grown() ? static_cast<std::uint32_t>(growth_->positions().size())
-                       : state_.mesh.vertex_count();
-    }
-
-    /// As StreamDecoder::faces().
-    std::uint32_t faces() const
-    {
-        return grown() ? static_cast<std::uint32_t>(growth_->faces().size())
-                       : state_.mesh.face_count();
-    }
-
-    /// As StreamDecoder::write_triangles().
-    void write_triangles(std::span<Triangle> out) const
-    {
-        if (grown())
-        {
-            std::ranges::transform(growth_->faces(), out.begin(), &GrownFace::vertex);
-            return;
-        }
-        for (const auto range : state_.mesh.face_ranges())
-        {
-            for (const Face& face : range)
-            {
-                out[face.slot] = face.vertex;
-            }
-        }
-    }
+    /// The mesh that is shown now.
+    ShownMesh shown() const { return {state_.mesh, grown() ? growth_.get() : nullptr}; }
 
     /// As StreamDecoder::attributes().
     const LevelAttributes* attributes() const
     {
-        return attributes_ && attributes_->has_level() && !attributes_->in_level()
-                   ? &attributes_->shown()
-                   : nullptr;
+        return attributes_.settled() ? attributes_.shown() : nullptr;
     }
 
     /// As StreamDecoder::level_mesh().
@@ -154,8 +125,8 @@ private:
         Step step;
         step.kind = kind;
         step.level = level_;
-        step.vertices = vertices();
-        step.faces = faces();
+        step.vertices = shown().vertices();
+        step.faces = shown().faces();
         step.first_new_vertex = step.vertices;
         step.first_moved_vertex = step.vertices;
         return step;
@@ -191,13 +162,17 @@ private:
         step.chunk = &chunk;
         step.contents = is_optional(chunk.kind) ? *contents : std::span<const std::byte>{};
         updates_.show({});
-        const auto done = decode_contents(chunk, *contents, step);
+        auto done = decode_contents(chunk, *contents, step);
+        if (done && next_ + 1 == info_->chunks.size() && !attributes_.settled())
+        {
+            done = fail(ErrorCode::BadChunk, "the stream ends within attributes");
+        }
         if (!done)
         {
             return fail(done.error().code, done.error().message, chunk.offset);
         }
-        step.vertices = vertices();
-        step.faces = faces();
+        step.vertices = shown().vertices();
+        step.faces = shown().faces();
         step.triangles = TriangleUpdates(updates_);
         if (step.level_complete)
         {
@@ -220,9 +195,7 @@ private:
         if (chunk.kind == proto::ChunkKind::Attributes && chunk.codec <= proto::kNormalsCodec &&
             limits_.attributes)
         {
-            Result<void> done;
-            VSPLIT_TRY(take_memory([&] { done = decode_attributes(chunk, bytes, step); }));
-            return done;
+            return decode_attributes(chunk, bytes, step);
         }
         if (is_optional(chunk.kind))
         {
@@ -232,7 +205,7 @@ private:
         {
             return fail(ErrorCode::LimitExceeded, "the level is beyond the limit");
         }
-        if (attributes_ && attributes_->in_level())
+        if (!attributes_.settled())
         {
             return fail(ErrorCode::BadChunk, "the attributes of a level are not complete");
         }
@@ -259,48 +232,13 @@ private:
         {
             return fail(ErrorCode::BadChunk, "attributes stand within a level");
         }
-        if (!attributes_)
-        {
-            attributes_ = std::make_unique<AttributeCoder>(info_->attributes);
-        }
-        BitDecoder bits;
-        VSPLIT_TRY(bits.start(bytes));
-        if (chunk.codec == proto::kNormalsCodec)
-        {
-            VSPLIT_TRY(decode_normals(bits, step));
-        }
-        else
-        {
-            VSPLIT_TRY(decode_values(bits, step));
-        }
-        return bits.finish();
-    }
-
-    Result<void> decode_values(BitDecoder& bits, Step& step)
-    {
-        if (!attributes_->in_level())
-        {
-            if (attributed_level_ == level_ + 1ULL)
-            {
-                return fail(ErrorCode::BadChunk, "the attributes of a level come twice");
-            }
-            VSPLIT_TRY(attributes_->begin_level(bits, level_mesh(), grown(), nullptr));
-            attributed_level_ = level_ + 1ULL;
-        }
-        VSPLIT_TRY(attributes_->code_values(bits, code_count(bits, 0)));
-        step.attributes_complete = !attributes_->in_level();
-        return {};
-    }
-
-    Result<void> decode_normals(BitDecoder& bits, Step& step)
-    {
-        if (level_ + 1ULL != info_->levels.size() || attributes_->in_level() ||
-            attributed_level_ != level_ + 1ULL)
-        {
-            return fail(ErrorCode::BadChunk, "normals come before the last level is complete");
-        }
-        VSPLIT_TRY(attributes_->code_normals(bits, code_count(bits, 0), {}));
-        step.attributes_complete = attributes_->normals_complete();
+        const AttributedLevel at{
+            .level = level_,
+            .last = level_ + 1ULL == info_->levels.size(),
+            .replaced = grown(),
+            .copy = [this] { return shown().copy(); }};
+        VSPLIT_TRY(attributes_.decode(*info_, limits_.max_level, chunk.codec, bytes, at));
+        step.attributes_complete = attributes_.settled();
         return {};
     }
 
@@ -439,7 +377,7 @@ private:
 
     Result<void> decode_stitches(std::span<const std::byte> bytes)
     {
-        if (vertices() != info_->vertex_count || state_.shift != 0)
+        if (shown().vertices() != info_->vertex_count || state_.shift != 0)
         {
             return fail(ErrorCode::BadChunk, "a stitch chunk comes before the last level");
         }
@@ -447,7 +385,7 @@ private:
         VSPLIT_TRY(bits.start(bytes));
         stitches_.assign(info_->vertex_count, 0);
         code_stitches(
-            bits, [this](std::uint32_t v) { return grid_position(v); }, stitches_
+            bits, [mesh = shown()](std::uint32_t v) { return mesh.position(v); }, stitches_
         );
         return bits.finish();
     }
@@ -457,8 +395,7 @@ private:
     SplitUpdates updates_{state_.mesh};
     std::optional<Error> error_;
     std::size_t next_ = 0;
-    std::unique_ptr<AttributeCoder> attributes_;  ///< Once its first chunk came.
-    std::uint64_t attributed_level_ = 0;          ///< One more than the level that they belong to.
+    AttributeChunks attributes_;
     bool spent_ = false;  ///< buffer_ was decoded; it stays until more bytes come.
 
 public:
@@ -466,21 +403,6 @@ public:
     const ChunkInfo* next_chunk() const;
     /// As StreamDecoder::skip().
     Step skip();
-
-    /// As StreamDecoder::grid_position().
-    std::array<std::int32_t, 3> grid_position(std::uint32_t vertex) const
-    {
-        if (grown())
-        {
-            return growth_->positions()[vertex];
-        }
-        const Point& point = state_.mesh.points()[vertex];
-        return {
-            static_cast<std::int32_t>(point.x),
-            static_cast<std::int32_t>(point.y),
-            static_cast<std::int32_t>(point.z),
-        };
-    }
 };
 
 }  // namespace vsplit::codec

@@ -407,6 +407,7 @@ private:
         info.vertex_count = plan_vertices();
         info.face_count = plan_faces();
         info.attributes = plan_.attributes;
+        info.wedge_count = count_wedges(plan_.wedges);
         return chunks_.assemble(std::move(info), extent_);
     }
 

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <iterator>
 #include <string>
+#include <utility>
 
 namespace vsplit::codec {
 namespace {
@@ -130,6 +131,9 @@ Result<AttributeInfo> read_attribute(ByteReader reader)
 
 Result<void> read_attributes(ByteReader& reader, StreamInfo& info)
 {
+    const auto wedges = read_bounded(reader, 0, 3ULL * proto::kMaxFaces, "wedge count");
+    VSPLIT_TRY(wedges);
+    info.wedge_count = *wedges;
     const auto count = read_bounded(reader, 0, proto::kMaxAttributes, "attribute count");
     VSPLIT_TRY(count);
     for (std::uint32_t i = 0; i < *count; ++i)
@@ -295,7 +299,14 @@ Result<StreamInfo> parse_stream_info(std::span<const std::byte> prefix, const De
         return fail(ErrorCode::BadHeader, "the index does not end where the header does");
     }
     VSPLIT_TRY(collect_levels(info));
-    if (decoder_heap_bytes(prefix_info(info, limits.max_level)) > limits.max_heap_bytes)
+    if (*has_attributes &&
+        (info.wedge_count < info.vertex_count || info.wedge_count > 3ULL * info.face_count))
+    {
+        return fail(ErrorCode::BadHeader, "the header's wedge count does not fit the mesh");
+    }
+    StreamInfo used = prefix_info(info, limits.max_level);
+    used = limits.attributes ? std::move(used) : without_attributes(std::move(used));
+    if (decoder_heap_bytes(used) > limits.max_heap_bytes)
     {
         return fail(ErrorCode::LimitExceeded, "decoding would need more memory than allowed");
     }

@@ -216,10 +216,12 @@ std::vector<std::byte> write_stream_header(
 )
 {
     ByteWriter body;
-    write_grid(body, info.grid, !info.attributes.empty());
+    const bool attributes = info.wedge_count > 0 || !info.attributes.empty();
+    write_grid(body, info.grid, attributes);
     body.write(info.content_checksum);
-    if (!info.attributes.empty())
+    if (attributes)
     {
+        body.write_varint(info.wedge_count);
         body.write_varint(info.attributes.size());
         for (const AttributeInfo& attribute : info.attributes)
         {

@@ -1,5 +1,6 @@
 #include "codec/stream_info.h"
 
+#include "codec/attribute_state.h"
 #include "codec/base_mesh_tables.h"
 #include "core/crc32c.h"
 
@@ -78,11 +79,20 @@ StreamInfo prefix_info(const StreamInfo& info, std::uint32_t level)
     prefix.file_bytes = stop_offset(info, StopCondition{.level = level});
     prefix.levels.resize(std::size_t{level} + 1);
     prefix.vertex_count = prefix.levels.back().vertices;
+    prefix.wedge_count = most_wedges({info.wedge_count, info.vertex_count}, prefix.vertex_count);
     prefix.face_count = prefix.levels.back().faces;
     std::erase_if(prefix.chunks, [&](const ChunkInfo& chunk) {
         return chunk.offset >= prefix.file_bytes;
     });
     return prefix;
+}
+
+StreamInfo without_attributes(StreamInfo info)
+{
+    std::erase_if(info.chunks, [](const ChunkInfo& chunk) {
+        return chunk.kind == proto::ChunkKind::Attributes;
+    });
+    return info;
 }
 
 LargestChunk largest_chunk(const StreamInfo& info)
@@ -151,6 +161,37 @@ std::uint64_t parts_heap_bytes(const StreamInfo& info)
     return most;
 }
 
+/// Heap for attributes.
+std::uint64_t attribute_heap_bytes(const StreamInfo& info)
+{
+    const std::uint64_t faces = info.face_count;
+    const std::uint64_t vertices = info.vertex_count;
+    const std::uint64_t wedges = info.wedge_count;
+    std::uint64_t numbers = 0;
+    std::uint64_t normals = 0;
+    for (const AttributeInfo& attribute : info.attributes)
+    {
+        const bool is_normal = attribute.kind == AttributeKind::Normal;
+        numbers += is_normal ? 0 : attribute.components;
+        normals += is_normal ? 1 : 0;
+    }
+    // Per face: its wedges and group; a copy of the mesh. Per vertex: its first wedge; in the copy its
+    // position. Per wedge: its vertex, the next one, its values.
+    const std::uint64_t lasting =
+        40 * faces + 16 * vertices + (8 + 4 * numbers + 8 * normals) * wedges;
+    // Then, while the level's wedges are coded, per face the new ones, per vertex its fan, whether seams go
+    // on there, and the longest of all fans, which may be that of a hub.
+    const std::uint64_t finding = 12 * faces + 32 * vertices;
+    // Or, while values are, per face the corners of wedges, per wedge its corners, its turn, and the size of
+    // the residuals; those of normals know deviations, too.
+    const std::uint64_t sizes = std::max<std::uint64_t>(4 * numbers, normals > 0 ? 16 : 0);
+    const std::uint64_t valuing = 12 * faces + (14 + sizes) * wedges;
+    // The learned models and small things.
+    constexpr std::uint64_t kFixed = 48U * 1024U;
+    constexpr std::uint64_t kModel = kResidualContexts * sizeof(IntegerModel);
+    return kFixed + numbers * kModel + lasting + std::max(finding, valuing);
+}
+
 }  // namespace
 
 std::uint64_t decoder_heap_bytes(const StreamInfo& info)
@@ -161,6 +202,14 @@ std::uint64_t decoder_heap_bytes(const StreamInfo& info)
     const bool grows = std::ranges::any_of(info.chunks, [](const ChunkInfo& chunk) {
         return chunk.kind == proto::ChunkKind::Growth;
     });
+    const bool attributed = std::ranges::any_of(info.chunks, [](const ChunkInfo& chunk) {
+        return chunk.kind == proto::ChunkKind::Attributes;
+    });
+    std::uint64_t names = 0;
+    for (const AttributeInfo& attribute : info.attributes)
+    {
+        names += 3 * (sizeof(AttributeInfo) + attribute.name.size());
+    }
     const LargestChunk largest = largest_chunk(info);
     const RefinedCounts refined = refined_counts(info);
     // The base first: per vertex what Draco needs besides the tables of its entropy coder.
@@ -178,7 +227,8 @@ std::uint64_t decoder_heap_bytes(const StreamInfo& info)
     // The learned model and small things.
     constexpr std::uint64_t kFixed = 128U * 1024U;
     return kFixed + std::max(draco, mesh) + largest.bytes +
-           sizeof(ChunkInfo) * info.chunks.size() * 2;
+           sizeof(ChunkInfo) * info.chunks.size() * 2 + names +
+           (attributed ? attribute_heap_bytes(info) : 0);
 }
 
 }  // namespace vsplit::codec

@@ -5,6 +5,7 @@
 #include "format.h"
 #include "mesh/quantization_grid.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -100,10 +101,25 @@ struct StreamInfo
     std::vector<ChunkInfo> chunks;          ///< In file order.
     std::vector<LevelInfo> levels;          ///< Level 0 first.
     std::vector<AttributeInfo> attributes;  ///< Empty when the stream has none.
+    std::uint32_t wedge_count = 0;  ///< Most wedges of the last level; 0 without attributes.
 
     /// Length of the bounding-box diagonal, model units.
     [[nodiscard]] double diagonal() const;
 };
+
+/// What a stream says of the size of its complete mesh.
+struct WedgeCounts
+{
+    std::uint32_t wedges = 0;
+    std::uint32_t vertices = 0;
+};
+
+/// Most wedges of a level that has `vertices` vertices, since every vertex to come has one at least.
+[[nodiscard]] inline std::uint32_t most_wedges(const WedgeCounts& counts, std::uint32_t vertices)
+{
+    const std::uint32_t others = counts.vertices - std::min(vertices, counts.vertices);
+    return counts.wedges - std::min(others, counts.wedges);
+}
 
 /// When to stop reading; unset members do not matter, the first one met stops.
 struct StopCondition
@@ -153,6 +169,9 @@ struct StopCondition
 /// later levels are left out. A level beyond the last gives `info` itself. Cost: linear in the index.
 [[nodiscard]] StreamInfo prefix_info(const StreamInfo& info, std::uint32_t level);
 
+/// Returns what header and index would say without chunks of attributes, as for a decoder that skips them.
+[[nodiscard]] StreamInfo without_attributes(StreamInfo info);
+
 /// What of a stream's chunks is the largest.
 struct LargestChunk
 {
@@ -175,7 +194,8 @@ struct RefinedCounts
 [[nodiscard]] RefinedCounts refined_counts(const StreamInfo& info);
 
 /// Returns an upper bound of the heap that a StreamDecoder needs for the whole stream, bytes; for a
-/// decoder with DecodeLimits::max_level ask with prefix_info().
+/// decoder with DecodeLimits::max_level ask with prefix_info(), for one that skips attributes with
+/// without_attributes().
 [[nodiscard]] std::uint64_t decoder_heap_bytes(const StreamInfo& info);
 
 }  // namespace vsplit::codec

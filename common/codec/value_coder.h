@@ -113,11 +113,15 @@ private:
     [[nodiscard]] std::uint32_t known_twin(std::uint32_t wedge) const
     {
         std::uint32_t twin = state_.first_wedge[state_.shown.wedge_vertices[wedge]];
-        while (twin != kNoWedge && !neighbours_.is_known(twin))
+        for (std::size_t n = 0; n < kMostTwins && twin != kNoWedge; ++n)
         {
+            if (neighbours_.is_known(twin))
+            {
+                return twin;
+            }
             twin = state_.next_wedge[twin];
         }
-        return twin;
+        return kNoWedge;
     }
 
     template <typename Coder>
@@ -260,6 +264,9 @@ private:
             clamp_int(steps, 0, static_cast<std::int32_t>(kResidualContexts) - 1)
         );
     }
+
+    /// Wedges of a vertex among which a known one is looked for; bounds the time.
+    static constexpr std::size_t kMostTwins = 64;
 
     /// What the residual of the number before tells of the next one, beside what is expected of it.
     static constexpr double kOwn = 0.75;

@@ -8,6 +8,7 @@
 #include "codec/level_mesh.h"
 #include "codec/wedge_neighbours.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -146,6 +147,8 @@ private:
     static constexpr double kRidge = 0.0001;
     static constexpr double kLeastRidge = 1.0 / (1 << 30);
     static constexpr double kBeyondWeight = 0.3125;
+    /// Bounds the time that a vertex with many neighbours takes.
+    static constexpr std::size_t kMostSamples = 64;
 
     /// A known wedge near by.
     struct Sample
@@ -168,7 +171,7 @@ private:
 
     void add(const WedgeNeighbours& neighbours, std::uint32_t wedge, double weight)
     {
-        if (neighbours.is_known(wedge) &&
+        if (samples_.size() < kMostSamples && neighbours.is_known(wedge) &&
             std::ranges::find(samples_, wedge, &Sample::wedge) == samples_.end())
         {
             samples_.push_back({.wedge = wedge, .weight = weight});

@@ -5,30 +5,19 @@
 // (wedges). Seams are followed along their course. Encoder and decoder run this same code.
 
 #include "codec/attribute_state.h"
+#include "codec/known_wedge_coder.h"
 #include "codec/level_mesh.h"
+#include "codec/wedge_work.h"
 #include "core/result.h"
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
-#include <limits>
-#include <span>
 #include <vector>
 
 namespace vsplit::codec {
-
-/// What an encoder wants: which wedge of the source is at every corner of the level.
-struct WedgeSource
-{
-    std::vector<Triangle> labels;  ///< By slot the source's wedges.
-    std::vector<std::uint32_t>
-        number_of;  ///< By source wedge its number in the stream, or kNoWedge.
-    std::vector<std::uint32_t> label_of;  ///< By wedge of the stream that of the source.
-};
 
 /// Codes which corners of a level share a wedge. Not thread safe. Safe on untrusted input.
 template <typename Coder>
@@ -36,101 +25,93 @@ class WedgeCoder
 {
 public:
     /// `mesh`: the level's; `state`: after the level before, changed by run(); `replaced`: the triangles
-    /// have nothing to do with those of the level before; `source`: encoder only.
+    /// have nothing to do with those of the level before; `most_wedges`: of the level; `source`: encoder
+    /// only.
     WedgeCoder(
         Coder& coder,
         const LevelMesh& mesh,
         AttributeState& state,
         bool replaced,
+        std::uint32_t most_wedges,
         WedgeSource* source
     )
-        : coder_(coder),
-          mesh_(mesh),
-          state_(state),
-          first_(first_corners(mesh)),
+        : work_{
+              .coder = coder,
+              .mesh = mesh,
+              .state = state,
+              .source = source,
+              .old = static_cast<std::uint32_t>(state.first_wedge.size()),
+              .first = first_corners(mesh),
+              .wedges = std::vector<Triangle>(
+                  mesh.triangles.size(), Triangle{kNoWedge, kNoWedge, kNoWedge}
+              ),
+              .waiting = ItemStacks(1, mesh.positions.size() - state.first_wedge.size())},
           replaced_(replaced),
-          source_(source),
-          old_(static_cast<std::uint32_t>(state.first_wedge.size())),
-          wedges_(mesh.triangles.size(), {kNoWedge, kNoWedge, kNoWedge})
+          most_(most_wedges)
     {
-        state_.first_wedge.resize(mesh.positions.size(), kNoWedge);
+        state.first_wedge.resize(mesh.positions.size(), kNoWedge);
     }
 
-    /// Codes the level. Error: Internal when what is wanted contradicts the level before.
+    /// Codes the level. Errors: Internal when what is wanted contradicts the level before; BadChunk when
+    /// there are too many wedges.
     [[nodiscard]] Result<void> run()
     {
         keep_known();
-        if (coder_.raw(Coder::kEncodes && has_seams() ? 1 : 0, 1) == 0)
+        if (work_.coder.raw(Coder::kEncodes && has_seams() ? 1 : 0, 1) == 0)
         {
             return fill_without_seams();
         }
-        for (std::uint32_t v = 0; v < old_; ++v)
-        {
-            VSPLIT_TRY(code_old(v));
-        }
+        VSPLIT_TRY(code_known());
         VSPLIT_TRY(follow_seams());
-        for (std::uint32_t v = old_; v < state_.first_wedge.size(); ++v)
+        for (std::uint32_t v = work_.old; v < work_.state.first_wedge.size(); ++v)
         {
             VSPLIT_TRY(code_new(v));
             VSPLIT_TRY(follow_seams());
         }
-        state_.shown.wedges = std::move(wedges_);
+        work_.state.shown.wedges = std::move(work_.wedges);
         return {};
     }
 
 private:
-    /// What is known at the far end of an edge: whether it separates wedges there.
-    enum class FarEnd : std::uint8_t
-    {
-        Joins,
-        Separates,
-        Unknown,
-    };
-
-    std::uint32_t& wedge_at(Corner corner)
-    {
-        return wedges_[static_cast<std::size_t>(corner >> 2)][static_cast<std::size_t>(corner & 3)];
-    }
-
-    [[nodiscard]] std::uint32_t label_at(Corner corner) const
-    {
-        return source_
-            ->labels[static_cast<std::size_t>(corner >> 2)][static_cast<std::size_t>(corner & 3)];
-    }
-
-    [[nodiscard]] bool is_single(std::uint32_t vertex) const
-    {
-        return state_.next_wedge[state_.first_wedge[vertex]] == kNoWedge;
-    }
-
     /// Takes over what the level before tells: corners that stay, and vertices with one wedge.
     void keep_known()
     {
-        const auto& before = state_.shown.wedges;
-        for (std::size_t slot = 0; slot < wedges_.size(); ++slot)
+        const auto& before = work_.state.shown.wedges;
+        for (std::size_t slot = 0; slot < work_.wedges.size(); ++slot)
         {
             for (std::size_t k = 0; k < 3; ++k)
             {
-                const std::uint32_t vertex = mesh_.triangles[slot][k];
-                if (vertex >= old_)
+                const std::uint32_t vertex = work_.mesh.triangles[slot][k];
+                if (vertex >= work_.old)
                 {
                     continue;
                 }
                 const bool stays = !replaced_ && slot < before.size() &&
-                                   state_.shown.wedge_vertices[before[slot][k]] == vertex;
-                if (stays || is_single(vertex))
+                                   work_.state.shown.wedge_vertices[before[slot][k]] == vertex;
+                if (stays || work_.is_single(vertex))
                 {
-                    wedges_[slot][k] = stays ? before[slot][k] : state_.first_wedge[vertex];
+                    work_.wedges[slot][k] =
+                        stays ? before[slot][k] : work_.state.first_wedge[vertex];
                 }
             }
         }
     }
 
+    [[nodiscard]] Result<void> code_known()
+    {
+        KnownWedgeCoder<Coder> known(work_);
+        for (std::uint32_t v = 0; v < work_.old; ++v)
+        {
+            VSPLIT_TRY(known.code(v));
+        }
+        return {};
+    }
+
     [[nodiscard]] bool has_seams()
     {
-        for (std::uint32_t v = 0; v < state_.first_wedge.size(); ++v)
+        for (std::uint32_t v = 0; v < work_.state.first_wedge.size(); ++v)
         {
-            if (v < old_ ? !is_single(v) : has_breaks(v))
+            if (v < work_.old ? !work_.is_single(v) : has_breaks(v))
             {
                 return true;
             }
@@ -141,266 +122,76 @@ private:
     /// Encoder only: whether a new vertex has several wedges.
     [[nodiscard]] bool has_breaks(std::uint32_t vertex)
     {
-        walk_fan(mesh_, first_[vertex], fan_);
-        const std::uint32_t label = label_at(fan_.corners.front());
-        return std::ranges::any_of(fan_.corners, [&](Corner c) { return label_at(c) != label; });
+        walk_fan(work_.mesh, work_.first[vertex], fan_);
+        const std::uint32_t label = work_.label_at(fan_.corners.front());
+        return std::ranges::any_of(fan_.corners, [&](Corner c) {
+            return work_.label_at(c) != label;
+        });
     }
 
     [[nodiscard]] Result<void> fill_without_seams()
     {
-        for (std::uint32_t v = old_; v < state_.first_wedge.size(); ++v)
+        VSPLIT_TRY(check_count(work_.state.first_wedge.size() - work_.old));
+        for (std::uint32_t v = work_.old; v < work_.state.first_wedge.size(); ++v)
         {
-            add_wedge(v, first_[v]);
+            work_.state.first_wedge[v] = add_wedge(v, work_.first[v]);
         }
-        for (std::size_t slot = 0; slot < wedges_.size(); ++slot)
+        for (std::size_t slot = 0; slot < work_.wedges.size(); ++slot)
         {
             for (std::size_t k = 0; k < 3; ++k)
             {
-                if (wedges_[slot][k] == kNoWedge)
+                if (work_.wedges[slot][k] == kNoWedge)
                 {
-                    wedges_[slot][k] = state_.first_wedge[mesh_.triangles[slot][k]];
+                    work_.wedges[slot][k] = work_.state.first_wedge[work_.mesh.triangles[slot][k]];
                 }
             }
         }
-        state_.shown.wedges = std::move(wedges_);
+        work_.state.shown.wedges = std::move(work_.wedges);
         return {};
     }
 
-    /// Appends a wedge to those of a vertex. `corner`: one that has it.
+    /// Checks that the level may have `count` wedges more.
+    [[nodiscard]] Result<void> check_count(std::size_t count) const
+    {
+        const std::size_t wedges = work_.state.shown.wedge_vertices.size();
+        return wedges <= most_ && count <= most_ - wedges
+                   ? Result<void>{}
+                   : fail(ErrorCode::BadChunk, "a level has more wedges than the header says");
+    }
+
+    /// Adds a wedge of a vertex. `corner`: one that has it.
     std::uint32_t add_wedge(std::uint32_t vertex, [[maybe_unused]] Corner corner)
     {
-        const auto wedge = static_cast<std::uint32_t>(state_.shown.wedge_vertices.size());
-        state_.shown.wedge_vertices.push_back(vertex);
-        state_.next_wedge.push_back(kNoWedge);
-        std::uint32_t* link = &state_.first_wedge[vertex];
-        while (*link != kNoWedge)
-        {
-            link = &state_.next_wedge[*link];
-        }
-        *link = wedge;
+        const auto wedge = static_cast<std::uint32_t>(work_.state.shown.wedge_vertices.size());
+        work_.state.shown.wedge_vertices.push_back(vertex);
+        work_.state.next_wedge.push_back(kNoWedge);
         if constexpr (Coder::kEncodes)
         {
-            source_->number_of[label_at(corner)] = wedge;
-            source_->label_of.push_back(label_at(corner));
+            work_.source->number_of[work_.label_at(corner)] = wedge;
+            work_.source->label_of.push_back(work_.label_at(corner));
         }
         return wedge;
-    }
-
-    /// Looks at the edge between a corner of the fan and the next one, at its far end.
-    [[nodiscard]] FarEnd far_end(Corner corner)
-    {
-        const std::uint32_t here = wedge_at(previous_corner(corner));
-        const std::uint32_t there = wedge_at(previous_corner(mesh_.across(next_corner(corner))));
-        if (here == kNoWedge || there == kNoWedge)
-        {
-            return FarEnd::Unknown;
-        }
-        return here == there ? FarEnd::Joins : FarEnd::Separates;
-    }
-
-    /// Puts the vertex at the far end of a seam's edge on the list, unless it is known.
-    void go_on_at(std::uint32_t vertex)
-    {
-        if (vertex >= old_ && state_.first_wedge[vertex] == kNoWedge)
-        {
-            waiting_.push_back(vertex);
-        }
     }
 
     [[nodiscard]] Result<void> follow_seams()
     {
-        while (!waiting_.empty())
+        while (work_.waiting.top(0) != ItemStacks::kNone)
         {
-            const std::uint32_t vertex = waiting_.back();
-            waiting_.pop_back();
-            VSPLIT_TRY(code_new(vertex));
+            const std::uint32_t vertex = work_.waiting.top(0);
+            work_.waiting.remove(0, vertex);
+            VSPLIT_TRY(code_new(work_.old + vertex));
         }
         return {};
     }
-
-    // ---- vertices of the level before ----
-
-    /// Codes the corners of a vertex whose wedges are known but not where they are.
-    [[nodiscard]] Result<void> code_old(std::uint32_t vertex)
-    {
-        if (is_single(vertex))
-        {
-            return {};
-        }
-        walk_fan(mesh_, first_[vertex], fan_);
-        start_at_known();
-        const std::size_t size = fan_.corners.size();
-        for (std::size_t i = 0; i < size; ++i)
-        {
-            const Corner corner = fan_.corners[i];
-            if (wedge_at(corner) == kNoWedge)
-            {
-                const auto wedge = i == 0 ? code_any(vertex, corner) : code_next(vertex, i);
-                VSPLIT_TRY(wedge);
-                wedge_at(corner) = *wedge;
-            }
-        }
-        for (std::size_t i = 0; i < (fan_.closed ? size : size - 1); ++i)
-        {
-            if (wedge_at(fan_.corners[i]) != wedge_at(fan_.corners[(i + 1) % size]))
-            {
-                go_on_at(mesh_.vertex(previous_corner(fan_.corners[i])));
-            }
-        }
-        return {};
-    }
-
-    /// Turns a closed fan so that it begins with what is known best.
-    void start_at_known()
-    {
-        auto& corners = fan_.corners;
-        auto start =
-            std::ranges::find_if(corners, [&](Corner c) { return wedge_at(c) != kNoWedge; });
-        if (start == corners.end())
-        {
-            start = std::ranges::find_if(corners, [&](Corner c) {
-                return wedge_at(next_corner(c)) != kNoWedge ||
-                       wedge_at(previous_corner(c)) != kNoWedge;
-            });
-        }
-        if (fan_.closed && start != corners.end())
-        {
-            std::ranges::rotate(corners, start);
-        }
-    }
-
-    /// The wedge of a vertex whose values are nearest to those of the corner's known neighbours; kNoWedge
-    /// when none is known.
-    [[nodiscard]] std::uint32_t likely_wedge(std::uint32_t vertex, Corner corner)
-    {
-        std::uint32_t best = kNoWedge;
-        std::int64_t least = std::numeric_limits<std::int64_t>::max();
-        for (std::uint32_t w = state_.first_wedge[vertex]; w != kNoWedge; w = state_.next_wedge[w])
-        {
-            std::int64_t sum = -1;
-            for (const Corner beside : {next_corner(corner), previous_corner(corner)})
-            {
-                const std::uint32_t other = wedge_at(beside);
-                sum = other == kNoWedge ? sum : std::max<std::int64_t>(sum, 0) + gap(w, other);
-            }
-            if (sum >= 0 && sum < least)
-            {
-                least = sum;
-                best = w;
-            }
-        }
-        return best;
-    }
-
-    /// Difference of the values of two wedges; wedges of this level have none yet.
-    [[nodiscard]] std::int64_t gap(std::uint32_t a, std::uint32_t b) const
-    {
-        std::int64_t sum = 0;
-        for (const auto& values : state_.shown.values)
-        {
-            const std::size_t numbers = valued_wedges_ == 0 ? 0 : values.size() / valued_wedges_;
-            if (std::max(a, b) >= valued_wedges_)
-            {
-                continue;
-            }
-            for (std::size_t k = 0; k < numbers; ++k)
-            {
-                sum += std::abs(values[a * numbers + k] - values[b * numbers + k]);
-            }
-        }
-        return sum;
-    }
-
-    /// Codes one of a vertex's wedges of which only the neighbours tell.
-    [[nodiscard]] Result<std::uint32_t> code_any(std::uint32_t vertex, Corner corner)
-    {
-        const std::uint32_t likely = likely_wedge(vertex, corner);
-        const std::uint32_t first = likely == kNoWedge ? state_.first_wedge[vertex] : likely;
-        return code_choice(vertex, corner, first);
-    }
-
-    /// Codes the wedge of a corner, knowing that of the one before it in the fan.
-    [[nodiscard]] Result<std::uint32_t> code_next(std::uint32_t vertex, std::size_t i)
-    {
-        const Corner corner = fan_.corners[i];
-        const std::uint32_t before = wedge_at(fan_.corners[i - 1]);
-        const std::uint32_t likely = likely_wedge(vertex, corner);
-        const bool last = i + 1 == fan_.corners.size();
-        const bool ends = last && !fan_.closed;
-        const std::uint32_t behind = ends ? kNoWedge : wedge_at(fan_.corners[last ? 0 : i + 1]);
-        const std::size_t context = static_cast<std::size_t>(far_end(fan_.corners[i - 1])) * 6 +
-                                    (likely == kNoWedge ? 0U
-                                     : likely == before ? 1U
-                                                        : 2U) *
-                                        2 +
-                                    (behind != kNoWedge && behind != before ? 1U : 0U);
-        const bool same = code_bit(
-            coder_, state_.wedge_model.same[context], Coder::kEncodes && wanted(corner) == before
-        );
-        if (same)
-        {
-            return before;
-        }
-        if (likely == kNoWedge || likely == before)
-        {
-            const std::uint32_t next = state_.next_wedge[before];
-            return code_choice(
-                vertex, corner, next == kNoWedge ? state_.first_wedge[vertex] : next
-            );
-        }
-        return code_choice(vertex, corner, likely);
-    }
-
-    /// Encoder only: number of the wedge at a corner.
-    [[nodiscard]] std::uint32_t wanted(Corner corner) const
-    {
-        if constexpr (Coder::kEncodes)
-        {
-            return source_->number_of[label_at(corner)];
-        }
-        return kNoWedge;
-    }
-
-    /// Codes a wedge of a vertex: the likely one, or any.
-    [[nodiscard]] Result<std::uint32_t> code_choice(
-        std::uint32_t vertex, Corner corner, std::uint32_t likely
-    )
-    {
-        const std::uint32_t wish = wanted(corner);
-        if (code_bit(coder_, state_.wedge_model.follows, wish == likely))
-        {
-            return likely;
-        }
-        std::uint32_t count = 0;
-        std::uint32_t index = kNoWedge;
-        for (std::uint32_t w = state_.first_wedge[vertex]; w != kNoWedge; w = state_.next_wedge[w])
-        {
-            index = w == wish ? count : index;
-            ++count;
-        }
-        if (Coder::kEncodes && index == kNoWedge)
-        {
-            return fail(ErrorCode::Internal, "a vertex gets a wedge that it had not");
-        }
-        index = coder_.raw(index, static_cast<int>(std::bit_width(count - 1)));
-        std::uint32_t wedge = state_.first_wedge[vertex];
-        for (; index > 0 && state_.next_wedge[wedge] != kNoWedge; --index)
-        {
-            wedge = state_.next_wedge[wedge];
-        }
-        return wedge;
-    }
-
-    // ---- new vertices ----
 
     /// Codes the wedges of a vertex that the level before has not.
     [[nodiscard]] Result<void> code_new(std::uint32_t vertex)
     {
-        if (state_.first_wedge[vertex] != kNoWedge)
+        if (work_.state.first_wedge[vertex] != kNoWedge)
         {
             return {};
         }
-        walk_fan(mesh_, first_[vertex], fan_);
+        walk_fan(work_.mesh, work_.first[vertex], fan_);
         const std::size_t size = fan_.corners.size();
         const std::size_t edges = fan_.closed ? size : size - 1;
         separates_.assign(size, 0);
@@ -408,7 +199,7 @@ private:
         std::array<std::size_t, 3> count{};
         for (std::size_t i = 0; i < edges; ++i)
         {
-            far_ends_[i] = far_end(fan_.corners[i]);
+            far_ends_[i] = work_.far_end(fan_.corners[i]);
             ++count[static_cast<std::size_t>(far_ends_[i])];
         }
         bool any = false;
@@ -417,14 +208,16 @@ private:
             for (std::size_t i = 0; i < edges; ++i)
             {
                 separates_[i] =
-                    label_at(fan_.corners[i]) != label_at(fan_.corners[(i + 1) % size]) ? 1 : 0;
+                    work_.label_at(fan_.corners[i]) != work_.label_at(fan_.corners[(i + 1) % size])
+                        ? 1
+                        : 0;
                 any = any || separates_[i] != 0;
             }
         }
         const std::size_t context =
             std::min<std::size_t>(count[1], 3) * 4 + std::min<std::size_t>((count[2] + 1) / 2, 3);
         if (edges > (fan_.closed ? 1U : 0U) &&
-            code_bit(coder_, state_.wedge_model.has_breaks[context], any))
+            code_bit(work_.coder, work_.state.wedge_model.has_breaks[context], any))
         {
             code_breaks(vertex, edges);
         }
@@ -448,8 +241,8 @@ private:
                 const std::size_t context = static_cast<std::size_t>(far_ends_[i]) * 6 +
                                             std::min<std::size_t>(breaks, 2) * 2 +
                                             (i == straight ? 1U : 0U) + (replaced_ ? 18U : 0U);
-                auto& model = state_.wedge_model.is_break[context];
-                separates_[i] = code_bit(coder_, model, separates_[i] != 0) ? 1 : 0;
+                auto& model = work_.state.wedge_model.is_break[context];
+                separates_[i] = code_bit(work_.coder, model, separates_[i] != 0) ? 1 : 0;
             }
             breaks += separates_[i];
         }
@@ -465,8 +258,9 @@ private:
             return edges;
         }
         const auto along = [&](std::size_t i) {
-            const auto& a = mesh_.positions[vertex];
-            const auto& b = mesh_.positions[mesh_.vertex(previous_corner(fan_.corners[i]))];
+            const auto& a = work_.mesh.positions[vertex];
+            const auto& b =
+                work_.mesh.positions[work_.mesh.vertex(previous_corner(fan_.corners[i]))];
             return std::array<double, 3>{
                 static_cast<double>(b[0] - a[0]),
                 static_cast<double>(b[1] - a[1]),
@@ -502,6 +296,8 @@ private:
         const std::size_t start = fan_.closed && last != separates_.end()
                                       ? static_cast<std::size_t>(last - separates_.begin()) + 1
                                       : 0;
+        const auto breaks = static_cast<std::size_t>(std::ranges::count(separates_, 1));
+        VSPLIT_TRY(check_count(fan_.closed ? std::max<std::size_t>(breaks, 1) : breaks + 1));
         std::uint32_t wedge = kNoWedge;
         for (std::size_t n = 0; n < size; ++n)
         {
@@ -509,10 +305,12 @@ private:
             const std::size_t edge = (i + size - 1) % size;
             if (n == 0 || separates_[edge] != 0)
             {
-                wedge = add_wedge(vertex, corners[i]);
+                const std::uint32_t next = add_wedge(vertex, corners[i]);
+                (n == 0 ? work_.state.first_wedge[vertex] : work_.state.next_wedge[wedge]) = next;
+                wedge = next;
             }
-            wedge_at(corners[i]) = wedge;
-            if (Coder::kEncodes && wanted(corners[i]) != wedge)
+            work_.wedge_at(corners[i]) = wedge;
+            if (Coder::kEncodes && work_.wanted(corners[i]) != wedge)
             {
                 return fail(ErrorCode::Internal, "the corners of a wedge do not stand together");
             }
@@ -521,22 +319,15 @@ private:
         {
             if (separates_[i] != 0)
             {
-                go_on_at(mesh_.vertex(previous_corner(corners[i])));
+                work_.go_on_at(work_.mesh.vertex(previous_corner(corners[i])));
             }
         }
         return {};
     }
 
-    Coder& coder_;
-    const LevelMesh& mesh_;
-    AttributeState& state_;
-    std::vector<Corner> first_;
+    WedgeWork<Coder> work_;
     bool replaced_;
-    WedgeSource* source_;
-    std::uint32_t old_;  ///< Vertices of the level before.
-    std::size_t valued_wedges_ = state_.shown.wedge_vertices.size();
-    std::vector<Triangle> wedges_;
-    std::vector<std::uint32_t> waiting_;
+    std::uint32_t most_;
     Fan fan_;
     std::vector<std::uint8_t> separates_;  ///< By edge of the fan.
     std::vector<FarEnd> far_ends_;

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "codec/attribute_state.h"
+#include "codec/item_stacks.h"
 #include "codec/level_mesh.h"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -24,7 +24,11 @@ public:
         std::uint32_t count,
         std::uint32_t known
     )
-        : mesh_(mesh), wedges_(wedges), begin_(count + 1ULL, 0), known_(count, 0)
+        : mesh_(mesh),
+          wedges_(wedges),
+          begin_(count + 1ULL, 0),
+          known_(count, 0),
+          waiting_(kMostPriority + 1, count)
     {
         for (const Triangle& triangle : wedges)
         {
@@ -38,14 +42,16 @@ public:
             begin_[w + 1] += begin_[w];
         }
         corners_.resize(begin_.back());
-        std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
         for (std::size_t slot = 0; slot < wedges.size(); ++slot)
         {
             for (std::size_t k = 0; k < 3; ++k)
             {
-                corners_[next[wedges[slot][k]]++] = static_cast<Corner>(4 * slot + k);
+                corners_[begin_[wedges[slot][k]]++] = static_cast<Corner>(4 * slot + k);
             }
         }
+        // Each begins where the next one ended up now.
+        std::copy_backward(begin_.begin(), begin_.end() - 1, begin_.end());
+        begin_.front() = 0;
         std::fill_n(known_.begin(), known, std::uint8_t{1});
         start_order(known);
     }
@@ -81,29 +87,24 @@ public:
     /// Takes the wedge to code next; kNoWedge when all are known.
     [[nodiscard]] std::uint32_t take()
     {
-        while (true)
+        while (best_ > 0 && waiting_.top(best_) == ItemStacks::kNone)
         {
-            while (best_ > 0 && waiting_[best_].empty())
-            {
-                --best_;
-            }
-            if (waiting_[best_].empty())
-            {
-                return kNoWedge;
-            }
-            const std::uint32_t wedge = waiting_[best_].back();
-            waiting_[best_].pop_back();
-            if (known_[wedge] == 0 && priority_[wedge] == best_)
-            {
-                return wedge;
-            }
+            --best_;
         }
+        const std::uint32_t wedge = waiting_.top(best_);
+        if (wedge == ItemStacks::kNone)
+        {
+            return kNoWedge;
+        }
+        waiting_.remove(best_, wedge);
+        return wedge;
     }
 
     /// Notes that the values of a wedge are known now.
     void know(std::uint32_t wedge)
     {
         known_[wedge] = 1;
+        waiting_.remove(priority_[wedge], wedge);
         for (const Corner corner : corners(wedge))
         {
             const std::uint32_t a = this->wedge(next_corner(corner));
@@ -130,7 +131,7 @@ private:
                 sum += a + b + 2 * a * b;
             }
             priority_[w] = static_cast<std::uint8_t>(std::min<int>(sum, kMostPriority));
-            waiting_[priority_[w]].push_back(static_cast<std::uint32_t>(w));
+            waiting_.push(priority_[w], static_cast<std::uint32_t>(w), priority_[w]);
             best_ = std::max<std::size_t>(best_, priority_[w]);
         }
     }
@@ -144,8 +145,8 @@ private:
         const int sum = std::min<int>(priority_[wedge] + by, kMostPriority);
         if (sum != priority_[wedge])
         {
+            waiting_.push(static_cast<std::size_t>(sum), wedge, priority_[wedge]);
             priority_[wedge] = static_cast<std::uint8_t>(sum);
-            waiting_[priority_[wedge]].push_back(wedge);
             best_ = std::max<std::size_t>(best_, priority_[wedge]);
         }
     }
@@ -156,8 +157,7 @@ private:
     std::vector<Corner> corners_;
     std::vector<std::uint8_t> known_;
     std::vector<std::uint8_t> priority_;
-    /// By priority the wedges that wait; those whose priority rose or that are known now are passed over.
-    std::array<std::vector<std::uint32_t>, kMostPriority + 1> waiting_;
+    ItemStacks waiting_;  ///< By priority the wedges that wait.
     std::size_t best_ = 0;
 };
 

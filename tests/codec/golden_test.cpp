@@ -7,8 +7,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 namespace vsplit::test {
@@ -21,6 +23,10 @@ std::string describe_meshes(const Decoded& decoded)
     for (const Snapshot& level : decoded.levels)
     {
         text += describe_level(level.level, level.shift, level.mesh);
+        for (const ShownAttributes& shown : decoded.attributes)
+        {
+            text += shown.level == level.level ? describe_attributes(shown.attributes) : "";
+        }
     }
     return text + describe_stitches(decoded.stitches);
 }
@@ -49,6 +55,40 @@ TEST(Golden, DecodesToTheSameMeshesAsEver)
         }
         EXPECT_EQ(meshes, read_text(stream.path(".txt")));
     }
+}
+
+TEST(Golden, CoversWhatAttributesOffer)
+{
+    bool seams = false;
+    bool groups = false;
+    bool replaced = false;
+    bool split = false;
+    std::set<AttributeKind> kinds;
+    for (const GoldenStream& stream : golden_streams())
+    {
+        const Bytes file = read_source_file(stream.path(".vsplit"));
+        const auto info = codec::parse_stream_info(file).value();
+        const Decoded decoded = decode(file);
+        if (decoded.attributes.empty())
+        {
+            continue;
+        }
+        const codec::LevelAttributes& last = decoded.attributes.back().attributes;
+        seams = seams || last.wedge_vertices.size() > info.vertex_count;
+        groups = groups || !last.groups.empty();
+        const bool grown = std::ranges::any_of(info.chunks, [](const codec::ChunkInfo& chunk) {
+            return chunk.kind == proto::ChunkKind::Growth;
+        });
+        replaced = replaced || grown;
+        split = split || !grown;
+        for (std::size_t a = 0; a < info.attributes.size(); ++a)
+        {
+            EXPECT_FALSE(last.values[a].empty()) << stream.name;
+            kinds.insert(info.attributes[a].kind);
+        }
+    }
+    EXPECT_TRUE(seams && groups && replaced && split);
+    EXPECT_EQ(kinds.size(), 3U);  // scalars are coded as texture coordinates are
 }
 
 TEST(Golden, CoversWhatTheFormatOffers)

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdio>
+#include <type_traits>
 
 namespace vsplit::test {
 namespace {
@@ -38,6 +39,23 @@ std::string describe_level(std::uint32_t level, int shift, const GridMesh& mesh)
     return std::to_string(level) + ' ' + std::to_string(mesh.positions.size()) + ' ' +
            std::to_string(mesh.triangles.size()) + ' ' + std::to_string(shift) + ' ' +
            hex(checksum(mesh.positions)) + ' ' + hex(checksum(mesh.triangles)) + '\n';
+}
+
+std::string describe_attributes(const codec::LevelAttributes& attributes)
+{
+    const auto of = [](const auto& numbers) {
+        const std::array<std::span<const typename std::decay_t<decltype(numbers)>::value_type>, 1>
+            rows{numbers};
+        return numbers.empty() ? std::string(" -") : ' ' + hex(checksum(rows));
+    };
+    std::string text = "attributes " + std::to_string(attributes.wedge_vertices.size()) +
+                       of(attributes.wedge_vertices) + ' ' + hex(checksum(attributes.wedges)) +
+                       of(attributes.groups);
+    for (const auto& values : attributes.values)
+    {
+        text += of(values);
+    }
+    return text + '\n';
 }
 
 std::string describe_stitches(std::span<const std::uint32_t> stitches)

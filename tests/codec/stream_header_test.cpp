@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <vector>
 
 namespace vsplit::test {
 namespace {
@@ -221,22 +223,72 @@ TEST(StreamHeader, ObeysEveryLimit)
     EXPECT_EQ(code_of(header, {.max_heap_bytes = heap - 1, .max_level = 0}), ErrorCode::Ok);
 }
 
-TEST(StreamHeader, SkipsAnAttributeTableOfALaterVersion)
+/// A header with one attribute of each kind.
+StreamInfo attributed_info()
 {
-    // The table stands behind the content checksum; a flag beside the position bits tells of it.
-    const Bytes header = write_header(sample_info());
-    Bytes longer(header.begin(), header.begin() + kIndexOffset);
-    longer[kGridOffset] |= std::byte{proto::kHasAttributes};
-    for (const unsigned byte : {2U, 3U, 7U, 7U, 7U, 0U})  // two entries, of three and no bytes
-    {
-        longer.push_back(static_cast<std::byte>(byte));
-    }
-    longer.insert(longer.end(), header.begin() + kIndexOffset, header.end());
-    longer[kLengthOffset] = static_cast<std::byte>(longer.size());
-    repair_checksums(longer);
-    const auto read = parse_stream_info(longer);
+    StreamInfo info = sample_info();
+    info.wedge_count = 40;
+    info.attributes.resize(4);
+    info.attributes[0].origin = {0.25F, -1.0F};
+    info.attributes[0].cell = 0.5F;
+    info.attributes[1].kind = AttributeKind::Normal;
+    info.attributes[1].components = 3;
+    info.attributes[2] = {
+        .kind = AttributeKind::Color, .set = 1, .components = 4, .bits = 16, .rgb = true};
+    info.attributes[3].kind = AttributeKind::Scalar;
+    info.attributes[3].components = 1;
+    info.attributes[3].name = "warmth";
+    return info;
+}
+
+TEST(StreamHeader, TellsOfAttributes)
+{
+    const StreamInfo wanted = attributed_info();
+    const auto read = parse_stream_info(write_header(wanted));
     ASSERT_TRUE(read.has_value()) << describe(read.error());
-    EXPECT_EQ(read->chunks.size(), 4U);
+    EXPECT_EQ(read->wedge_count, 40U);
+    ASSERT_EQ(read->attributes.size(), 4U);
+    for (std::size_t a = 0; a < 4; ++a)
+    {
+        EXPECT_EQ(read->attributes[a].kind, wanted.attributes[a].kind);
+        EXPECT_EQ(read->attributes[a].set, wanted.attributes[a].set);
+        EXPECT_EQ(read->attributes[a].components, wanted.attributes[a].components);
+        EXPECT_EQ(read->attributes[a].bits, wanted.attributes[a].bits);
+        EXPECT_EQ(read->attributes[a].rgb, wanted.attributes[a].rgb);
+        EXPECT_EQ(read->attributes[a].name, wanted.attributes[a].name);
+    }
+    EXPECT_EQ(read->attributes[0].origin, wanted.attributes[0].origin);
+    EXPECT_EQ(read->attributes[0].cell, 0.5F);
+    EXPECT_EQ(read->attributes[2].cell, 1.0F / 65535.0F);
+}
+
+TEST(StreamHeader, RefusesAttributesThatCannotBe)
+{
+    const auto code_with = [](const std::function<void(StreamInfo&)>& change) {
+        StreamInfo info = attributed_info();
+        change(info);
+        return code_of(write_header(info));
+    };
+    EXPECT_EQ(code_with([](auto&) {}), ErrorCode::Ok);
+    const std::vector<std::function<void(StreamInfo&)>> changes{
+        [](auto& info) { info.attributes[0].components = 3; },
+        [](auto& info) { info.attributes[0].bits = 0; },
+        [](auto& info) { info.attributes[0].bits = 17; },
+        [](auto& info) { info.attributes[0].rgb = true; },
+        [](auto& info) { info.attributes[0].cell = 0.0F; },
+        [](auto& info) { info.attributes[0].origin[1] = std::numeric_limits<float>::infinity(); },
+        [](auto& info) { info.attributes[1].bits = 1; },
+        [](auto& info) { info.attributes[2].components = 2; },
+        [](auto& info) { info.attributes[3].components = 5; },
+        [](auto& info) { info.attributes[3].kind = static_cast<AttributeKind>(4); },
+        [](auto& info) { info.attributes.resize(proto::kMaxAttributes + 1, info.attributes[0]); },
+        [](auto& info) { info.wedge_count = info.vertex_count - 1; },
+        [](auto& info) { info.wedge_count = 3 * info.face_count + 1; },
+    };
+    for (std::size_t i = 0; i < changes.size(); ++i)
+    {
+        EXPECT_EQ(code_with(changes[i]), ErrorCode::BadHeader) << i;
+    }
 }
 
 TEST(ChunkContents, AreTheChunkWithoutItsChecksum)

@@ -91,6 +91,30 @@ TEST(PrefixInfo, IsWhatTheHeaderOfThePrefixWouldSay)
     EXPECT_EQ(prefix_info(info, 4000000000U).chunks.size(), info.chunks.size());
 }
 
+TEST(PrefixInfo, LeavesAWedgeForEveryVertexToCome)
+{
+    StreamInfo info = sample();
+    info.wedge_count = 120;
+    EXPECT_EQ(prefix_info(info, 2).wedge_count, 90U);  // 60 vertices, 30 to come
+    EXPECT_EQ(prefix_info(info, 3).wedge_count, 120U);
+    info.wedge_count = 0;
+    EXPECT_EQ(prefix_info(info, 1).wedge_count, 0U);
+}
+
+TEST(DecoderHeapBytes, CountAttributesThatAreDecoded)
+{
+    StreamInfo info = sample();
+    const std::uint64_t bare = codec::decoder_heap_bytes(info);
+    info.wedge_count = 120;
+    info.attributes.resize(1);
+    info.chunks[5].kind = ChunkKind::Attributes;
+    const std::uint64_t one = codec::decoder_heap_bytes(info);
+    EXPECT_GT(one, bare);
+    info.attributes.resize(2);
+    EXPECT_GT(codec::decoder_heap_bytes(info), one);
+    EXPECT_LT(codec::decoder_heap_bytes(codec::without_attributes(info)), one);
+}
+
 TEST(DecoderHeapBytes, GrowWithTheLevel)
 {
     const StreamInfo info = sample();

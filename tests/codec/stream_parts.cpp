@@ -126,6 +126,10 @@ Decoded decode(std::span<const std::byte> file, const codec::DecodeLimits& limit
         {
             result.levels.push_back(snapshot(decoder));
         }
+        if (step->attributes_complete)
+        {
+            result.attributes.push_back({decoder.level(), *decoder.attributes()});
+        }
     }
     result.last = snapshot(decoder);
     result.complete = decoder.complete();

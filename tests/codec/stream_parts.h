@@ -52,12 +52,20 @@ struct Snapshot
 /// Copies what a decoder shows.
 [[nodiscard]] Snapshot snapshot(const codec::StreamDecoder& decoder);
 
+/// The attributes of a level.
+struct ShownAttributes
+{
+    std::uint32_t level = 0;
+    codec::LevelAttributes attributes;
+};
+
 /// What became of a stream.
 struct Decoded
 {
-    std::vector<Snapshot> chunks;  ///< After every chunk that changed the mesh.
-    std::vector<Snapshot> levels;  ///< After every level.
-    Snapshot last;                 ///< In the end, also after an error.
+    std::vector<Snapshot> chunks;             ///< After every chunk that changed the mesh.
+    std::vector<Snapshot> levels;             ///< After every level.
+    Snapshot last;                            ///< In the end, also after an error.
+    std::vector<ShownAttributes> attributes;  ///< Whenever some were complete.
     std::vector<std::uint32_t> stitches;
     std::optional<Error> error;
     bool complete = false;

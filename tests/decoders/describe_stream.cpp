@@ -38,6 +38,10 @@ Result<void> advance(codec::StreamDecoder& decoder)
         {
             print_level(decoder);
         }
+        if (step->attributes_complete)
+        {
+            std::fputs(describe_attributes(*decoder.attributes()).c_str(), stdout);
+        }
     }
 }
 

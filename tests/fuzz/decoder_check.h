@@ -58,6 +58,41 @@ inline void check_mesh(const codec::StreamDecoder& decoder)
     static_cast<void>(codec::extract_mesh(decoder));
 }
 
+/// What a caller may count on when attributes are complete: indices in range, every wedge at corners of its
+/// vertex, values in range that turn into finite numbers.
+inline void check_attributes(const codec::StreamDecoder& decoder)
+{
+    const codec::LevelAttributes& shown = *decoder.attributes();
+    const auto& infos = decoder.info()->attributes;
+    const std::size_t wedges = shown.wedge_vertices.size();
+    std::vector<Triangle> triangles(decoder.faces());
+    decoder.write_triangles(triangles);
+    require(shown.wedges.size() == triangles.size() && wedges <= decoder.info()->wedge_count);
+    for (std::size_t slot = 0; slot < triangles.size(); ++slot)
+    {
+        for (std::size_t k = 0; k < 3; ++k)
+        {
+            require(shown.wedges[slot][k] < wedges);
+            require(shown.wedge_vertices[shown.wedges[slot][k]] == triangles[slot][k]);
+        }
+    }
+    require(shown.groups.empty() || shown.groups.size() == triangles.size());
+    require(std::ranges::all_of(shown.groups, [](std::uint32_t g) { return g < 1U << 16; }));
+    require(shown.values.size() == infos.size());
+    for (std::size_t a = 0; a < infos.size(); ++a)
+    {
+        const auto& values = shown.values[a];
+        const bool later = infos[a].kind == AttributeKind::Normal && values.empty();
+        require(later || values.size() == wedges * codec::coded_components(infos[a]));
+        const std::int32_t most = (1 << infos[a].bits) - 1;
+        require(std::ranges::all_of(values, [&](std::int32_t x) { return x <= most && x >= -most; })
+        );
+        std::vector<float> numbers(later ? 0 : wedges * infos[a].components);
+        codec::write_values(infos[a], values, numbers);
+        require(std::ranges::none_of(numbers, [](float x) { return std::isnan(x); }));
+    }
+}
+
 /// Feeds a stream in pieces of `piece` bytes and follows every step.
 inline void check_stream(std::span<const std::byte> file, std::size_t piece)
 {
@@ -82,6 +117,10 @@ inline void check_stream(std::span<const std::byte> file, std::size_t piece)
         if (step->triangles_replaced)
         {
             decoder.write_triangles(triangles);
+        }
+        if (step->attributes_complete)
+        {
+            check_attributes(decoder);
         }
         const std::size_t taken = decoder.feed(file.first(std::min(piece, file.size()))).value();
         file = file.subspan(taken);

@@ -1,3 +1,4 @@
+#include "codec/attribute_coder.h"
 #include "codec/batch_coder.h"
 #include "codec/context_model.h"
 #include "codec/error_scale.h"
@@ -8,6 +9,7 @@
 #include "core/crc32c.h"
 #include "core/error.h"
 #include "format.h"
+#include "initial_residuals.h"
 
 #include <gtest/gtest.h>
 
@@ -96,12 +98,18 @@ TEST(StreamFormatDocument, GivesTheConstantsOfTheCode)
         {"kMaxFaces", kMaxFaces},
         {"kMaxChunks", kMaxChunks},
         {"kMaxLevels", kMaxLevels},
+        {"kMaxAttributes", kMaxAttributes},
+        {"kMaxGroups", kMaxGroups},
+        {"kMaxAttributeBits", kMaxAttributeBits},
         {"kMaxHeaderBytes", kMaxHeaderBytes},
         {"kTargetChunkBytes", kTargetChunkBytes},
         {"kChunkChecksumBytes", kChunkChecksumBytes},
         {"kSinglePrecisionGrid", kSinglePrecisionGrid},
         {"kHasAttributes", kHasAttributes},
+        {"kRgbColor", kRgbColor},
         {"kFirstOptionalChunkKind", kFirstOptionalChunkKind},
+        {"kValuesCodec", kValuesCodec},
+        {"kNormalsCodec", kNormalsCodec},
         {"kDracoBaseCodec", kDracoBaseCodec},
         {"kSmallBaseCodec", kSmallBaseCodec},
         {"kMaxSmallBaseVertices", kMaxSmallBaseVertices},
@@ -137,6 +145,9 @@ TEST(StreamFormatDocument, NamesEveryChunkKindWithItsNumber)
         {"Growth", static_cast<unsigned long>(proto::ChunkKind::Growth)},
         {"Parts", static_cast<unsigned long>(proto::ChunkKind::Parts)},
         {"Stitch", static_cast<unsigned long>(proto::ChunkKind::Stitch)},
+        {"Attributes", static_cast<unsigned long>(proto::ChunkKind::Attributes)},
+        {"Appearance", static_cast<unsigned long>(proto::ChunkKind::Appearance)},
+        {"Texture", static_cast<unsigned long>(proto::ChunkKind::Texture)},
     };
     const std::string row = R"(\| (\d+) \| `(\w+)` \| (?:yes|no) \|)";
     EXPECT_EQ(numbers(read_document("Constants"), row, 2, 1), expected);
@@ -160,6 +171,7 @@ TEST(StreamFormatDocument, GivesTheChecksumsOfTheTables)
         {"kLogSum", table_crc(detail::kLogSum)},
         {"kAdaptation", table_crc(detail::kAdaptation)},
         {"kErrorSteps", table_crc(kErrorSteps)},
+        {"kInitialResiduals", table_crc(test::initial_residuals())},
         {"kPacked", table_crc(pack_model(std::span(&initial, 1)))},
     };
     const Numbers sizes{
@@ -167,6 +179,7 @@ TEST(StreamFormatDocument, GivesTheChecksumsOfTheTables)
         {"kLogSum", detail::kLogSum.size()},
         {"kAdaptation", detail::kAdaptation.size()},
         {"kErrorSteps", kErrorSteps.size()},
+        {"kInitialResiduals", test::initial_residuals().size()},
         {"kPacked", pack_model(std::span(&initial, 1)).size()},
     };
     const std::string row = R"(\n\| `(k\w+)` \| (\d+) \| \w+ \| (0x[0-9a-f]{8}) \|)";

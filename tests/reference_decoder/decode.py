@@ -13,11 +13,14 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
+from attributes import Attributes
 from base import Missing, SmallBase, decode_draco
 from batches import Batches, Models
 from bits import AdaptiveBit, BitStreams, Refusal, crc32c, trace_bytes
 from growth import Growth
-from header import BASE, BATCH, DRACO_BASE, GROWTH, PARTS, RESIDUE, SMALL_BASE, STITCH, Header
+from header import (
+    ATTRIBUTES, BASE, BATCH, DRACO_BASE, FIRST_OPTIONAL, GROWTH, PARTS, RESIDUE, SMALL_BASE, STITCH, Header,
+)
 from mesh import Mesh
 
 PROTO = pathlib.Path(__file__).resolve().parents[2] / "proto"
@@ -58,14 +61,16 @@ def stitch(streams, positions):
 
 
 class Decoder:
-    """Decodes a whole stream; show(level, mesh, shift) is called when a level is complete."""
+    """Decodes a whole stream; show(level, mesh, shift) is called when a level is complete,
+    show_attributes(attributes) when its attributes are."""
 
-    def __init__(self, data, show, trace=None):
+    def __init__(self, data, show, trace=None, show_attributes=lambda attributes: None):
         self.trace = trace
         self.show = show
+        self.show_attributes = show_attributes
         self.level = 0
         self.mesh = self.batches = self.growth = None
-        self.one = None
+        self.one = self.attributes = None
         self.header = Header(data, trace)
         at = self.header.length
         for row in self.header.rows:
@@ -79,8 +84,15 @@ class Decoder:
             self._decode(row, chunk[:-4])
         if at != len(data):
             raise Refusal("trailing-bytes")
+        self._require_settled()
+
+    def _require_settled(self):
+        if self.attributes and not self.attributes.settled():
+            raise Refusal("bad-chunk")
 
     def _decode(self, row, contents):
+        if row.kind < FIRST_OPTIONAL:
+            self._require_settled()
         if row.kind == BASE:
             self._base(row, contents)
         elif row.kind == BATCH:
@@ -97,12 +109,33 @@ class Decoder:
             if row.shift or not self._last_level_is_complete():
                 raise Refusal("bad-chunk")
             self.one = stitch(self._streams(contents), self.mesh.positions)
+        elif row.kind == ATTRIBUTES and row.codec <= 1:
+            self._attributes(row, contents)
+        if row.kind < FIRST_OPTIONAL:
+            self.within_level = not row.ends_level
         if row.ends_level:
             self.show(self.level, self.mesh, row.shift)
             self.level += 1
 
+    def _attributes(self, row, contents):
+        if self.within_level:
+            raise Refusal("bad-chunk")
+        if self.attributes is None:
+            last = self.header.rows[-1]
+            counts = self.header.wedges or 0, last.vertices
+            self.attributes = Attributes(self.header.attributes, counts)
+        complete = self.attributes.decode(
+            self._streams(contents), row.codec, self.level, self._all_levels_are_complete(),
+            self.mesh, self.mesh is self.growth
+        )
+        if complete:
+            self.show_attributes(self.attributes)
+
+    def _all_levels_are_complete(self):
+        return self.level == sum(row.ends_level for row in self.header.rows)
+
     def _last_level_is_complete(self):
-        return self.level == sum(row.ends_level for row in self.header.rows) and self.one is None
+        return self._all_levels_are_complete() and self.one is None
 
     def _base(self, row, contents):
         extent = [edge >> row.shift for edge in self.header.extent]
@@ -147,6 +180,17 @@ def show_level(level, mesh, shift):
     return lines
 
 
+def describe_attributes(attributes):
+    """The line of a summary that tells of attributes."""
+    sums = [checksum([attributes.level.vertices]), checksum(attributes.level.wedge_triangles())]
+    sums.append(checksum([attributes.groups]) if attributes.group_count > 1 else None)
+    for values in attributes.values:
+        rows = [[number & 0xFFFFFFFF for number in value] for value in values]
+        sums.append(checksum(rows) if rows else None)
+    shown = " ".join("-" if number is None else f"{number:08x}" for number in sums)
+    return f"attributes {len(attributes.level.vertices)} {shown}"
+
+
 def write_obj(path, positions, triangles):
     with open(path, "w", encoding="ascii") as file:
         file.writelines("v {} {} {}\n".format(*position) for position in positions)
@@ -166,7 +210,12 @@ def decode(data, options):
         if options.trace:
             print("\n".join(show_level(level, mesh, shift)))
 
-    decoder = Decoder(data, show, print if options.trace else None)
+    def show_attributes(attributes):
+        lines.append(describe_attributes(attributes))
+        if options.trace:
+            print(lines[-1])
+
+    decoder = Decoder(data, show, print if options.trace else None, show_attributes)
     if decoder.one is not None:
         lines.append(f"stitches {checksum([decoder.one]):08x}")
     return lines

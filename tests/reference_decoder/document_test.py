@@ -11,6 +11,7 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 import bits
+from attributes import initial_residuals
 from decode import PROTO, Decoder, packed_model, show_level
 
 DOCUMENT = (PROTO / "STREAM_FORMAT.md").read_text(encoding="utf-8")
@@ -54,6 +55,7 @@ class DocumentTest(unittest.TestCase):
             "kLogSum": struct.pack("<1024h", *bits.LOG_SUM),
             "kAdaptation": struct.pack("<128H", *bits.ADAPTATION),
             "kErrorSteps": struct.pack("<8d", *steps),
+            "kInitialResiduals": initial_residuals(),
             "kPacked": packed_model(),
         }
         rows = re.findall(r"\n\| `(k\w+)` \| \d+ \| \w+ \| 0x([0-9a-f]{8}) \|", DOCUMENT)
@@ -78,7 +80,13 @@ class DocumentTest(unittest.TestCase):
 
     def test_changed_chunks_with_right_checksums_are_refused_or_valid(self):
         """Nothing but a refusal may leave the decoder, whatever the bits say."""
-        data = (GOLDEN / "strip.vsplit").read_bytes()
+        for name in ("strip", "sheet_splits"):
+            outcomes = self._outcomes((GOLDEN / f"{name}.vsplit").read_bytes())
+            self.assertIn("bad-chunk", outcomes)
+            self.assertLessEqual(outcomes, {"bad-chunk", None})
+
+    @staticmethod
+    def _outcomes(data):
         rows = Decoder(data, lambda *level: None).header.rows
         begin = len(data) - sum(row.size for row in rows)
         outcomes = set()
@@ -90,8 +98,7 @@ class DocumentTest(unittest.TestCase):
                 end = begin + row.size
                 outcomes.add(refusal(data[:begin] + bytes(chunk) + checksum + data[end:]))
             begin += row.size
-        self.assertIn("bad-chunk", outcomes)
-        self.assertLessEqual(outcomes, {"bad-chunk", None})
+        return outcomes
 
 
 if __name__ == "__main__":

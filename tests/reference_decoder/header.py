@@ -1,15 +1,16 @@
 """Header and index of proto/STREAM_FORMAT.md ("Header", "Index")."""
 
 import math
-import struct
 from dataclasses import dataclass
 
 from arithmetic import AXES, clamp, digits, l3, single
 from bits import AdaptiveBit, BitStreams, IntegerModel, Refusal, crc32c, trace_bytes
+from fields import Attribute, Entry, HeaderBytes, require
 
-BASE, BATCH, GROWTH, PARTS, STITCH, FIRST_OPTIONAL = 0, 1, 2, 3, 64, 64
+BASE, BATCH, GROWTH, PARTS, STITCH, ATTRIBUTES, FIRST_OPTIONAL = 0, 1, 2, 3, 64, 65, 64
 RESIDUE = 0x48674BC7
 MAX_VERTICES, MAX_FACES, MAX_CHUNKS, MAX_LEVELS = 268435456, 536870910, 1048576, 1024
+MAX_ATTRIBUTES = 16
 MAX_CHUNK_BYTES = 2 ** 28
 MAX_PARTS_VERTICES, MAX_PARTS_FACES = 4096, 3
 REFINEMENT_BITS = 262144
@@ -34,36 +35,7 @@ class Row:
     ends_level: bool = False
     errors: tuple = (0, 0)
     grown: tuple = (0, 0)
-
-
-class HeaderBytes:
-    """Takes fields from the header; what lies behind its end is truncated."""
-
-    def __init__(self, data):
-        self.data = data
-        self.at = 0
-
-    def take(self, n):
-        if n > len(self.data) - self.at:
-            raise Refusal("truncated")
-        self.at += n
-        return self.data[self.at - n:self.at]
-
-    def unpack(self, kind):
-        return struct.unpack("<" + kind, self.take(struct.calcsize("<" + kind)))[0]
-
-    def varint(self):
-        value = 0
-        for i in range(10):
-            byte = self.unpack("B")
-            value |= (byte & 127) << (7 * i)
-            if byte < 128:
-                break
-        else:
-            raise Refusal("bad-header")
-        if value >> 64:
-            raise Refusal("bad-header")
-        return value
+    tag: int = 0
 
 
 def header_length(data):
@@ -72,7 +44,7 @@ def header_length(data):
         raise Refusal("bad-magic")
     if len(data) < 9:
         raise Refusal("truncated")
-    if data[4] != 3:
+    if data[4] != 4:
         raise Refusal("unsupported-version")
     if all(byte >= 128 for byte in data[5:9]):
         raise Refusal("bad-header")
@@ -109,12 +81,14 @@ class Header:
         if not (all(map(math.isfinite, [*self.origin, self.cell])) and self.cell > 0):
             raise Refusal("bad-header")
         take("content checksum", lambda: f"0x{fields.unpack('I'):x}")
+        self.wedges, self.attributes = None, []
         if flags & 0x20:
+            self.wedges = take("wedges", fields.varint)
             count = take("attributes", fields.varint)
-            if count > 255:
-                raise Refusal("bad-header")
+            require(count <= MAX_ATTRIBUTES)
             for i in range(count):
-                take(f"attribute {i}", lambda: fields.take(fields.varint()).hex())
+                entry = take(f"attribute {i}", lambda: Entry(fields))
+                self.attributes.append(Attribute(entry.data))
         if trace:
             trace_bytes(trace, data[fields.at:-4], "extent and index")
             trace_bytes(trace, data[-4:], "checksum")
@@ -139,6 +113,8 @@ class Header:
         if not math.isfinite(diagonal_squared):
             raise Refusal("bad-header")
         self.rows = index.rows
+        if self.wedges is not None:
+            require(index.vertices <= self.wedges <= 3 * index.faces)
         streams.finish()
 
 
@@ -166,7 +142,8 @@ class Index:
         self.models = {name: _model(*of) for name, of in MODELS.items()}
         self.rows = []
         self._base(bits)
-        self.kind, self.codec = BATCH, 0
+        self.following = {kind: (BATCH, 0) for kind in range(256)}
+        self.following[GROWTH] = GROWTH, 0
         self.levels = 1
         self.level_chunks, self.left_chunks = 1, 0
         self.level_splits = self.vertices // 2
@@ -232,21 +209,23 @@ class Index:
         self.rows.append(row)
 
     def _other(self):
-        raw = self.streams.raw
+        before = self.rows[-1].kind
         if self.streams.adaptive(self.other_kind, "other kind"):
-            self.kind, self.codec = raw(8, "kind"), raw(8, "codec")
-        if self.kind >= FIRST_OPTIONAL:
-            self._append(Row(self.kind, self.codec, self.number("bytes")))
+            self.following[before] = divmod(self.streams.raw(16, "kind and codec"), 256)
+        kind, codec = self.following[before]
+        if kind >= FIRST_OPTIONAL:
+            size = self.number("bytes")
+            self._append(Row(kind, codec, size, tag=self.number("tag")))
             return
-        require(self.kind != BASE)
-        if self.kind not in (BATCH, GROWTH, PARTS) or self.codec != 0:
+        require(kind != BASE)
+        if kind not in (BATCH, GROWTH, PARTS) or codec != 0:
             raise Refusal("unknown-required-chunk")
-        if self.kind == GROWTH:
+        if kind == GROWTH:
             require(self.parts_start is None)
             self._growth()
             return
         require(self.growing is None)
-        if self.kind == PARTS:
+        if kind == PARTS:
             self._parts()
         else:
             require(self.parts_start is None)
@@ -395,8 +374,3 @@ class Index:
         if self.streams.trace:
             percent = 100 * 2 ** (-code / 8) if code < 320 else 0
             self.streams.trace(f"{name} error code {code}, {percent:.3f} % of the diagonal")
-
-
-def require(condition, error="bad-header"):
-    if not condition:
-        raise Refusal(error)

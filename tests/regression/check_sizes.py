@@ -18,7 +18,7 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 SIZES = pathlib.Path(__file__).with_name("sizes.csv")
 ASSETS = ["assets/bone.ply", "assets/beast.ply", "assets/bracket.ply", "assets/terrain.ply",
-          "assets/pair.ply", "assets/dirty.ply"]
+          "assets/pair.ply", "assets/dirty.ply", "assets/vase.obj"]
 MODELS = ["cow-2903", "bones", "homer", "lucy-5k", "fandisk", "casting", "three-peaks"]
 
 
