@@ -1,5 +1,6 @@
 #include "connection.h"
 
+#include "client_socket.h"
 #include "link_shaper.h"
 #include "retry_policy.h"
 
@@ -66,14 +67,23 @@ public:
 
     ByteQueue& bytes() { return queue_; }
 
-    void restrict_to(const StopPlan& stop)
+    void restrict_to(const StopPlan& stop, std::vector<ByteRange> unwanted)
     {
-        asio::post(context_, [this, stop] { change_stop(stop); });
+        asio::post(context_, [this, stop, ranges = std::move(unwanted)] {
+            transfer_.leave_out(ranges);
+            change_stop(stop);
+        });
+    }
+
+    bool leaves_out(std::uint64_t offset) const
+    {
+        const std::lock_guard lock(mutex_);
+        return std::ranges::find(gaps_, offset, &ByteRange::begin) != gaps_.end();
     }
 
     std::optional<Error> error() const
     {
-        const std::lock_guard lock(error_mutex_);
+        const std::lock_guard lock(mutex_);
         return error_;
     }
 
@@ -130,7 +140,8 @@ private:
         {
             stop_changed_ = false;
             auto outcome = co_await fetch();
-            if (!outcome || !stop_changed_)
+            note_gaps();
+            if (!outcome || !(stop_changed_ || transfer_.has_more()))
             {
                 co_return outcome;
             }
@@ -151,7 +162,7 @@ private:
         error_code result = asio::error::host_not_found;
         for (const auto& endpoint : endpoints)
         {
-            result = prepare_socket(endpoint.endpoint());
+            result = prepare_socket(socket_, endpoint.endpoint(), options_.link);
             if (!result)
             {
                 const auto [connect_error] =
@@ -176,27 +187,6 @@ private:
         co_return Result<void>{};
     }
 
-    error_code prepare_socket(const tcp::endpoint& endpoint)
-    {
-        error_code result;
-        socket_.close(result);
-        socket_.open(endpoint.protocol(), result);
-        if (result)
-        {
-            return result;
-        }
-        // Before connecting, so that the window that the server sees is small from the start.
-        const std::size_t receive_bytes = receive_buffer_bytes(options_.link);
-        if (receive_bytes > 0)
-        {
-            const auto size = static_cast<int>(receive_bytes);
-            socket_.set_option(asio::socket_base::receive_buffer_size(size), result);
-        }
-        error_code ignored;
-        socket_.set_option(tcp::no_delay(true), ignored);
-        return result;
-    }
-
     // Asks for the bytes that are missing and receives them.
     Task fetch()
     {
@@ -205,6 +195,7 @@ private:
         {
             co_return tl::unexpected<Error>(frame.error());
         }
+        note_gaps();
         arm_deadline();
         const auto [write_error, written] =
             co_await asio::async_write(socket_, asio::buffer(*frame), kAwait);
@@ -277,6 +268,14 @@ private:
         asio::post(context_, [this] { room_.cancel(); });
     }
 
+    // Before the bytes that follow them are in the queue; see Connection::leaves_out().
+    void note_gaps()
+    {
+        const auto passed = transfer_.take_gaps();
+        const std::lock_guard lock(mutex_);
+        gaps_.insert(gaps_.end(), passed.begin(), passed.end());
+    }
+
     void change_stop(const StopPlan& stop)
     {
         options_.stop = stop;
@@ -315,11 +314,7 @@ private:
         deadline_.cancel();
     }
 
-    void close_socket()
-    {
-        error_code ignored;
-        socket_.close(ignored);
-    }
+    void close_socket() { static_cast<void>(socket_.close(ignored_)); }
 
     [[nodiscard]] tl::unexpected<Error> lost(const std::string& what, const error_code& why) const
     {
@@ -330,14 +325,13 @@ private:
             return fail(ErrorCode::Timeout, peer + " does not answer", transfer_.received());
         }
         const std::string reason = why == asio::error::eof ? "the server closed it" : why.message();
-        return fail(
-            ErrorCode::ConnectionLost, peer + ": " + what + ": " + reason, transfer_.received()
-        );
+        const std::string text = peer + ": " + what + ": " + reason;
+        return fail(ErrorCode::ConnectionLost, text, transfer_.received());
     }
 
     void set_error(Error error)
     {
-        const std::lock_guard lock(error_mutex_);
+        const std::lock_guard lock(mutex_);
         error_ = std::move(error);
     }
 
@@ -353,6 +347,7 @@ private:
     ByteQueue queue_;
     std::vector<std::byte> input_;
     std::uint64_t deadline_generation_ = 0;
+    error_code ignored_;
     bool timed_out_ = false;
     bool fetching_ = false;
     bool stop_changed_ = false;
@@ -360,8 +355,9 @@ private:
     std::atomic<std::uint64_t> payload_bytes_ = 0;
     std::atomic<std::uint64_t> wire_bytes_ = 0;
     std::atomic<std::uint32_t> reconnects_ = 0;
-    mutable std::mutex error_mutex_;
+    mutable std::mutex mutex_;
     std::optional<Error> error_;
+    std::vector<ByteRange> gaps_;
     std::thread thread_;
 };
 
@@ -381,9 +377,14 @@ ByteQueue& Connection::bytes()
     return impl_->bytes();
 }
 
-void Connection::restrict_to(const StopPlan& stop)
+void Connection::restrict_to(const StopPlan& stop, std::vector<ByteRange> unwanted)
 {
-    impl_->restrict_to(stop);
+    impl_->restrict_to(stop, std::move(unwanted));
+}
+
+bool Connection::leaves_out(std::uint64_t offset) const
+{
+    return impl_->leaves_out(offset);
 }
 
 std::optional<Error> Connection::error() const

@@ -52,9 +52,14 @@ public:
     /// (error() is empty) or not.
     [[nodiscard]] ByteQueue& bytes();
 
-    /// Ends the running transfer and asks for the rest with an earlier stop. Bytes beyond that stop
-    /// that were on their way may still come.
-    void restrict_to(const StopPlan& stop);
+    /// Ends the running transfer and asks for the rest with an earlier stop, leaving out what is not
+    /// wanted, one range a chunk, ascending. Bytes beyond that stop or of such chunks that were on their
+    /// way may still come: leaves_out() tells.
+    void restrict_to(const StopPlan& stop, std::vector<ByteRange> unwanted = {});
+
+    /// True when the chunk that begins at byte `offset` of the file does not come: what follows in the
+    /// queue is the next one. Reliable once a byte behind it is in the queue or the queue is drained.
+    [[nodiscard]] bool leaves_out(std::uint64_t offset) const;
 
     /// Why the transfer failed; nothing while it runs or when it went well.
     [[nodiscard]] std::optional<Error> error() const;

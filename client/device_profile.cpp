@@ -30,6 +30,7 @@ constexpr Bounds kWidth{"width", 16, 4096};
 constexpr Bounds kHeight{"height", 16, 4096};
 constexpr Bounds kMemory{"memory_bytes", 1U << 16, std::uint64_t{1} << 40};
 constexpr Bounds kBudget{"frame_budget_ms", 1, 60000};
+constexpr Bounds kTextureLimit{"texture_limit", 0, 32768};
 
 tl::unexpected<Error> bad(const std::string& why)
 {
@@ -56,8 +57,8 @@ Result<std::uint64_t> read_field(const json& object, const Bounds& bounds)
 
 Result<void> check_fields(const json& object)
 {
-    constexpr std::array<std::string_view, 5> kKnown{
-        "name", kWidth.field, kHeight.field, kMemory.field, kBudget.field};
+    constexpr std::array<std::string_view, 6> kKnown{
+        "name", kWidth.field, kHeight.field, kMemory.field, kBudget.field, kTextureLimit.field};
     for (const auto& item : object.items())
     {
         if (std::find(kKnown.begin(), kKnown.end(), item.key()) == kKnown.end())
@@ -98,6 +99,12 @@ Result<DeviceProfile> parse_device(std::string_view text)
     device.height = static_cast<std::uint32_t>(*height);
     device.memory_bytes = *memory;
     device.frame_budget = std::chrono::milliseconds(*budget);
+    if (object.contains(kTextureLimit.field))
+    {
+        const auto limit = read_field(object, kTextureLimit);
+        VSPLIT_TRY(limit);
+        device.texture_limit = static_cast<std::uint32_t>(*limit);
+    }
     return device;
 }
 
@@ -110,11 +117,11 @@ Result<DeviceProfile> load_device(std::string_view name_or_file)
     }
     if (name_or_file == "phone")
     {
-        return DeviceProfile{"phone", 720, 1280, 256U << 20, milliseconds(33)};
+        return DeviceProfile{"phone", 720, 1280, 256U << 20, milliseconds(33), 2048};
     }
     if (name_or_file == "tablet")
     {
-        return DeviceProfile{"tablet", 1280, 800, 1U << 30, milliseconds(16)};
+        return DeviceProfile{"tablet", 1280, 800, 1U << 30, milliseconds(16), 4096};
     }
     const auto bytes = read_file(std::filesystem::path(name_or_file), kMaxDeviceFileBytes);
     if (!bytes)

@@ -18,10 +18,12 @@ struct DeviceProfile
     /// Memory for the model: decoder, vertex and index arrays and their GPU copies, bytes.
     std::uint64_t memory_bytes = 16U << 20;
     std::chrono::milliseconds frame_budget{100};  ///< Time a frame may take, decoding included.
+    std::uint32_t texture_limit = 512;  ///< Longest side of a texture, pixels; 0: no textures.
 };
 
 /// Returns a built-in profile (pda, phone, tablet) or reads a JSON file of the same fields:
-/// `{"name", "width", "height", "memory_bytes", "frame_budget_ms"}`, all but the name required.
+/// `{"name", "width", "height", "memory_bytes", "frame_budget_ms", "texture_limit"}`, all but the name
+/// and the limit of textures required.
 /// `name_or_file`: tried as a name first. Errors: NotFound, IoError, InputTooLarge, and
 /// UnsupportedInput for what is not such a file (which field and why). Safe on untrusted input.
 [[nodiscard]] Result<DeviceProfile> load_device(std::string_view name_or_file);

@@ -68,10 +68,26 @@ Result<std::unique_ptr<Display>> Display::create(const Options& options)
     return std::unique_ptr<Display>(new Display(options, std::move(*renderer)));
 }
 
-Result<void> Display::prepare(const codec::StreamInfo& info)
+Result<void> Display::prepare(const codec::StreamInfo& info, bool surface)
 {
     turntable_.emplace(info.box_min, info.box_max, aspect_, up_);
-    return renderer_->reserve(info.vertex_count, info.face_count);
+    return surface ? renderer_->reserve(0, 0)
+                   : renderer_->reserve(info.vertex_count, info.face_count);
+}
+
+void Display::set_appearance(const Appearance& appearance)
+{
+    renderer_->surface().set_appearance(appearance);
+}
+
+Result<void> Display::replace_texture(std::uint32_t image, const Raster& raster)
+{
+    return renderer_->surface().replace_texture(image, raster);
+}
+
+std::uint64_t Display::texture_memory_bytes() const
+{
+    return renderer_->surface().texture_memory_bytes();
 }
 
 std::chrono::duration<double, std::milli> Display::draw(GpuBuffers& buffers)

@@ -24,8 +24,21 @@ public:
     [[nodiscard]] static Result<std::unique_ptr<Display>> create(const Options& options);
 
     /// Prepares for a model: camera from its bounding box, GPU memory for so many elements.
-    /// `info`: header and index, cut to what will be shown. Error: LimitExceeded.
-    [[nodiscard]] Result<void> prepare(const codec::StreamInfo& info);
+    /// `info`: header and index, cut to what will be shown; `surface`: levels come with show().
+    /// Error: LimitExceeded.
+    [[nodiscard]] Result<void> prepare(const codec::StreamInfo& info, bool surface = false);
+
+    /// Replaces the model by a level with attributes. Error: LimitExceeded.
+    [[nodiscard]] Result<void> show(const SurfaceArrays& arrays) { return renderer_->show(arrays); }
+
+    /// Sets the materials of such levels.
+    void set_appearance(const Appearance& appearance);
+
+    /// Replaces the texture of an image. Error: LimitExceeded.
+    [[nodiscard]] Result<void> replace_texture(std::uint32_t image, const Raster& raster);
+
+    /// Memory of the textures with mipmaps, bytes.
+    [[nodiscard]] std::uint64_t texture_memory_bytes() const;
 
     /// Uploads what changed, draws the next frame and waits until it is finished; returns how long
     /// that took. Precondition: prepare() succeeded.

@@ -23,6 +23,8 @@ struct RawOptions
     std::string up = "y";
     double timeout_seconds = 30.0;
     bool no_render = false;
+    bool no_attributes = false;
+    std::optional<std::uint32_t> texture_limit;
 };
 
 void declare(CLI::App& app, RawOptions& raw, Options& options)
@@ -39,6 +41,15 @@ void declare(CLI::App& app, RawOptions& raw, Options& options)
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
     app.add_flag("--wireframe", options.wireframe, "Draw the edges of the mesh");
+    app.add_flag(
+        "--no-attributes", raw.no_attributes, "Leave out colours, normals, materials and textures"
+    );
+    app.add_option(
+           "--texture-limit",
+           raw.texture_limit,
+           "Longest side of a texture, pixels; 0 for none; the device's by default"
+    )
+        ->check(CLI::Range(0, 32768));
     app.add_flag("--no-render", raw.no_render, "Decode only, draw nothing");
     app.add_option("--up", raw.up, "Axis of the model that points up")
         ->check(CLI::IsMember({"x", "y", "z"}))
@@ -98,6 +109,8 @@ Result<void> check(const RawOptions& raw, Options& options)
     options.device = std::move(*device);
     options.up = raw.up == "x" ? UpAxis::X : raw.up == "z" ? UpAxis::Z : UpAxis::Y;
     options.render = !raw.no_render;
+    options.attributes = !raw.no_attributes;
+    options.device.texture_limit = raw.texture_limit.value_or(options.device.texture_limit);
     options.timeout =
         std::chrono::milliseconds(static_cast<std::int64_t>(raw.timeout_seconds * 1000.0));
     if (!options.render && (options.wireframe || !options.screenshots.empty()))

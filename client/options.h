@@ -26,6 +26,8 @@ struct Options
     std::uint32_t frames = 10;  ///< Least frames drawn per level.
     bool render = true;
     bool wireframe = false;
+    bool attributes =
+        true;  ///< Colours, normals, texture coordinates, materials and images are wanted.
     UpAxis up = UpAxis::Y;
     std::filesystem::path screenshots;  ///< Folder; empty for none.
     std::filesystem::path save;         ///< PLY file; empty for none.

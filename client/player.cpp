@@ -1,7 +1,7 @@
 #include "player.h"
 
 #include "memory_plan.h"
-#include "ply_file.h"
+#include "saved_level.h"
 
 #include <algorithm>
 #include <span>
@@ -16,8 +16,6 @@ constexpr milliseconds kLongestWait{100};
 constexpr milliseconds kGoodbyeWait{2000};
 constexpr std::chrono::duration<double> kLeastDecodeBudget{0.001};
 constexpr std::size_t kBlockBytes = 16384;
-// While bytes are on their way the model keeps turning; on a very slow link not for ever.
-constexpr std::size_t kMostFramesPerLevel = 2000;
 
 ConnectionOptions connection_options(const Options& options)
 {
@@ -28,6 +26,7 @@ ConnectionOptions connection_options(const Options& options)
         options.device.width,
         options.device.height,
         options.device.memory_bytes,
+        options.attributes ? options.device.texture_limit : 0,
     };
     result.stop = options.stop;
     result.link = options.link;
@@ -58,16 +57,30 @@ std::uint32_t level_at(const codec::StreamInfo& info, std::uint64_t prefix_bytes
     return found == info.levels.end() ? info.levels.back().level : found->level;
 }
 
+// What a link carries while a request is on its way: leaving out less does not pay.
+std::uint64_t least_gap_bytes(const LinkProfile& link)
+{
+    constexpr std::uint64_t kLeast = 4096;
+    const double seconds = std::chrono::duration<double>(link.latency).count();
+    return std::max(kLeast, static_cast<std::uint64_t>(link.bytes_per_second * seconds));
+}
+
 std::string megabytes(std::uint64_t bytes)
 {
     const std::uint64_t tenths = (bytes + 50000) / 100000;
     return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " MB";
 }
 
+std::string memory_line(const DeviceProfile& device, const MemoryPlan& plan)
+{
+    return "memory: " + device.name + " has " + megabytes(device.memory_bytes) + "; " +
+           megabytes(plan.needed_bytes) + " are used: ";
+}
+
 }  // namespace
 
 Player::Player(const Options& options, std::ostream& out)
-    : options_(options), out_(out), block_(kBlockBytes)
+    : options_(options), out_(out), presenter_(options, out, report_), block_(kBlockBytes)
 {
     report_.model = options.address.model;
     report_.device = options.device.name;
@@ -77,22 +90,17 @@ Player::Player(const Options& options, std::ostream& out)
 
 Result<void> Player::run()
 {
-    if (options_.render)
-    {
-        auto display = Display::create(options_);
-        VSPLIT_TRY(display);
-        display_ = std::move(*display);
-    }
-    start_ = Clock::now();
+    VSPLIT_TRY(presenter_.open());
+    presenter_.start_clock();
     connection_ = std::make_unique<Connection>(connection_options(options_));
     const auto outcome = play();
-    report_.seconds = elapsed();
+    report_.seconds = presenter_.elapsed();
     if (outcome && !restricted_)
     {
         await_goodbye();
     }
     report_.transferred = connection_->counters();
-    print_last_row();
+    presenter_.finish();
     VSPLIT_TRY(outcome);
     return finish();
 }
@@ -102,11 +110,11 @@ Result<void> Player::play()
     VSPLIT_TRY(read_header());
     VSPLIT_TRY(plan());
     VSPLIT_TRY(start_refining());
-    while (needs_frames() || !reached_end())
+    while (presenter_.needs_frames() || !reached_end())
     {
-        if (needs_frames())
+        if (presenter_.needs_frames())
         {
-            draw_frame();
+            VSPLIT_TRY(presenter_.draw_frame());
             continue;
         }
         VSPLIT_TRY(refine());
@@ -147,33 +155,44 @@ Result<void> Player::read_header()
 
 Result<void> Player::plan()
 {
-    StopPlan stop = options_.stop;
-    if (stop.error_in_percent)
+    stop_ = options_.stop;
+    if (stop_.error_in_percent)
     {
-        stop.condition.error *= info_.diagonal() / 100.0;
-        stop.error_in_percent = false;
+        stop_.condition.error *= info_.diagonal() / 100.0;
+        stop_.error_in_percent = false;
     }
-    end_ = codec::stop_offset(info_, stop.condition);
+    end_ = codec::stop_offset(info_, stop_.condition);
     const std::uint32_t wanted = level_at(info_, end_);
     const ConnectionOptions transfer = connection_options(options_);
-    const auto fitting = plan_memory(
-        info_,
-        wanted,
-        {options_.device.memory_bytes, transfer.queue_bytes + header_.size(), options_.wireframe}
-    );
+    const bool surface = options_.attributes && has_surface(info_);
+    MemoryUse use;
+    use.cap_bytes = options_.device.memory_bytes;
+    use.queue_bytes = transfer.queue_bytes + header_.size();
+    use.wireframe = options_.wireframe;
+    use.surface = surface;
+    use.texture_limit = surface ? options_.device.texture_limit : 0;
+    const auto fitting = plan_memory(info_, wanted, use);
     VSPLIT_TRY(fitting);
     report_.memory_planned_bytes = fitting->needed_bytes;
+    report_.texture_planned_bytes = fitting->texture_bytes;
+    report_.texture_limit = fitting->texture_limit;
     level_ = fitting->level;
-    if (level_ < wanted)
+    texture_limit_ = fitting->texture_limit;
+    restricted_ = level_ < wanted;
+    if (restricted_)
     {
-        stop.condition.level = level_;
-        end_ = codec::stop_offset(info_, stop.condition);
-        connection_->restrict_to(stop);
-        restricted_ = true;
-        out_ << "memory: " << options_.device.name << " has "
-             << megabytes(options_.device.memory_bytes) << "; level " << level_ << " of "
-             << info_.levels.size() - 1 << " is the finest that fits ("
-             << megabytes(fitting->needed_bytes) << ")\n";
+        stop_.condition.level = level_;
+        end_ = codec::stop_offset(info_, stop_.condition);
+    }
+    if (restricted_)
+    {
+        out_ << memory_line(options_.device, *fitting) << "level " << level_ << " of "
+             << info_.levels.size() - 1 << " is the finest that fits\n";
+    }
+    if (texture_limit_ < use.texture_limit && report_.texture_planned_bytes > 0)
+    {
+        out_ << memory_line(options_.device, *fitting) << "textures fit with sides up to "
+             << texture_limit_ << " pixels\n";
     }
     return {};
 }
@@ -184,10 +203,51 @@ Result<void> Player::start_refining()
     codec::DecodeLimits limits = header_limits(options_.device);
     limits.max_heap_bytes = options_.device.memory_bytes;
     limits.max_level = level_;
-    refiner_ = std::make_unique<Refiner>(shown, limits);
+    refiner_ = std::make_unique<Refiner>(shown, limits, options_.attributes);
     VSPLIT_TRY(feed_header());
-    out_ << table_head() << '\n';
-    return display_ ? display_->prepare(shown) : Result<void>{};
+    VSPLIT_TRY(presenter_.prepare(shown, *refiner_, texture_limit_));
+    unwanted_ = find_unwanted();
+    if (restricted_ || !unwanted_.empty())
+    {
+        connection_->restrict_to(stop_, unwanted_);
+    }
+    return {};
+}
+
+bool Player::wants(const codec::ChunkInfo& chunk) const
+{
+    const bool known = chunk.kind == proto::ChunkKind::Attributes ||
+                       chunk.kind == proto::ChunkKind::Appearance ||
+                       chunk.kind == proto::ChunkKind::Texture;
+    return options_.attributes && known && presenter_.images().wants(chunk);
+}
+
+std::vector<ByteRange> Player::find_unwanted() const
+{
+    const auto wanted = [this](const codec::ChunkInfo& chunk) { return wants(chunk); };
+    return unwanted_chunks(info_, wanted, end_, least_gap_bytes(options_.link));
+}
+
+// Once the materials have come it is known which images are drawn at all.
+void Player::leave_out_unwanted()
+{
+    if (knows_materials_ || presenter_.images().appearance() == nullptr)
+    {
+        return;
+    }
+    knows_materials_ = true;
+    std::vector<ByteRange> unwanted = find_unwanted();
+    std::erase_if(unwanted, [this](const ByteRange& range) {
+        return range.begin < refiner_->decoder().received_bytes();
+    });
+    const bool more = std::ranges::any_of(unwanted, [this](const ByteRange& range) {
+        return std::ranges::find(unwanted_, range) == unwanted_.end();
+    });
+    if (more)
+    {
+        unwanted_ = std::move(unwanted);
+        connection_->restrict_to(stop_, unwanted_);
+    }
 }
 
 // The header was taken from the queue before there was a decoder.
@@ -207,25 +267,30 @@ Result<void> Player::feed_header()
 Result<void> Player::refine()
 {
     VSPLIT_TRY(pump_bytes());
-    const std::chrono::duration<double> last_frame{
-        report_.levels.empty() || report_.levels.back().frame_ms.empty()
-            ? 0.0
-            : report_.levels.back().frame_ms.back() / 1000.0};
     const std::chrono::duration<double> budget = options_.device.frame_budget;
-    const auto progress = refiner_->advance(std::max(kLeastDecodeBudget, budget - last_frame));
+    const auto progress =
+        refiner_->advance(std::max(kLeastDecodeBudget, budget - presenter_.last_frame()));
     VSPLIT_TRY(progress);
-    VSPLIT_TRY(account(*progress));
-    return progress->chunk_bytes > 0 ? Result<void>{} : wait_or_draw();
+    VSPLIT_TRY(presenter_.account(*progress));
+    leave_out_unwanted();
+    return progress->bytes.sum() > 0 ? Result<void>{} : wait_or_draw();
 }
 
 Result<void> Player::pump_bytes()
 {
     while (true)
     {
-        const std::uint64_t missing = end_ - refiner_->decoder().received_bytes();
+        // In this order: what was left out is known before what follows it is in the queue.
+        const bool there = connection_->bytes().wait(milliseconds(0));
+        if (there || connection_->bytes().drained())
+        {
+            skip_left_out();
+        }
+        const codec::StreamDecoder& decoder = refiner_->decoder();
+        const std::uint64_t missing = end_ - std::min(end_, decoder.received_bytes());
         const std::uint64_t wanted =
-            std::min<std::uint64_t>({refiner_->decoder().wanted_bytes(), missing, block_.size()});
-        const auto part = std::span(block_).first(wanted);
+            std::min<std::uint64_t>({decoder.wanted_bytes(), missing, block_.size()});
+        const auto part = std::span(block_).first(there ? wanted : 0);
         const std::size_t count = connection_->bytes().pop(part);
         if (count == 0)
         {
@@ -235,55 +300,35 @@ Result<void> Player::pump_bytes()
     }
 }
 
-Result<void> Player::account(const Progress& progress)
+// Returns whether there was any.
+bool Player::skip_left_out()
 {
-    next_row_.chunk_bytes += progress.chunk_bytes;
-    if (progress.chunk_bytes > 0)
-    {
-        next_row_.decode_ms += progress.decoding.count() * 1000.0;
-    }
-    if (!progress.level_complete)
-    {
-        if (progress.changed && display_ && !report_.levels.empty())
-        {
-            draw_frame();
-        }
-        return {};
-    }
-    print_last_row();
     const codec::StreamDecoder& decoder = refiner_->decoder();
-    LevelRow row = std::move(next_row_);
-    next_row_ = {};
-    row.level = decoder.level();
-    row.vertices = decoder.vertices();
-    row.faces = decoder.faces();
-    row.cumulative_bytes = decoder.decoded_bytes();
-    report_.levels.push_back(std::move(row));
-    if (display_)
+    bool skipped = false;
+    while (decoder.next_chunk() != nullptr && decoder.received_bytes() == decoder.decoded_bytes() &&
+           connection_->leaves_out(decoder.next_chunk()->offset))
     {
-        draw_frame();
+        refiner_->skip();
+        skipped = true;
     }
-    report_.levels.back().seconds = elapsed();
-    report_.levels.back().resident_bytes = resident_bytes();
-    return display_ ? display_->save_picture(decoder.level()) : Result<void>{};
+    return skipped;
 }
 
 Result<void> Player::wait_or_draw()
 {
     if (connection_->bytes().drained())
     {
-        return accept_end_of_transfer();
+        return skip_left_out() || reached_end() ? Result<void>{} : accept_end_of_transfer();
     }
-    const bool turning = display_ && !report_.levels.empty() &&
-                         report_.levels.back().frame_ms.size() < kMostFramesPerLevel;
-    const auto now = Clock::now();
-    if (turning && now >= next_frame_)
+    const auto now = std::chrono::steady_clock::now();
+    const auto next_frame = presenter_.next_frame();
+    if (next_frame && now >= *next_frame)
     {
-        draw_frame();
-        return {};
+        return presenter_.draw_frame();
     }
-    const auto until_frame = std::chrono::ceil<milliseconds>(next_frame_ - now);
-    connection_->bytes().wait(turning ? std::min(kLongestWait, until_frame) : kLongestWait);
+    const auto pause =
+        next_frame ? std::chrono::ceil<milliseconds>(*next_frame - now) : kLongestWait;
+    connection_->bytes().wait(std::min(kLongestWait, pause));
     return {};
 }
 
@@ -324,47 +369,20 @@ Result<void> Player::finish()
              << ", after " << decoder.decoded_bytes() << " of " << info_.file_bytes << " bytes\n";
     }
     out_.flush();
-    return options_.save.empty() ? Result<void>{}
-                                 : write_ply(options_.save, codec::extract_mesh(decoder));
+    return options_.save.empty() ? Result<void>{} : save_level(options_.save, *refiner_);
 }
 
 // The server's last words follow the last byte; they belong to the bytes on the wire. After a stop
 // that was moved forward, what was already on its way comes before them: better hang up.
 void Player::await_goodbye()
 {
-    const auto deadline = Clock::now() + kGoodbyeWait;
+    const auto deadline = std::chrono::steady_clock::now() + kGoodbyeWait;
     ByteQueue& bytes = connection_->bytes();
-    while (!bytes.drained() && Clock::now() < deadline)
+    while (!bytes.drained() && std::chrono::steady_clock::now() < deadline)
     {
         bytes.wait(kLongestWait);
         bytes.pop(block_);
     }
-}
-
-void Player::draw_frame()
-{
-    next_frame_ = Clock::now() + options_.device.frame_budget;
-    const auto time = display_->draw(refiner_->buffers());
-    report_.levels.back().frame_ms.push_back(time.count());
-}
-
-void Player::print_last_row()
-{
-    if (!report_.levels.empty())
-    {
-        out_ << table_row(report_.levels.back()) << std::endl;
-    }
-}
-
-double Player::elapsed() const
-{
-    return std::chrono::duration<double>(Clock::now() - start_).count();
-}
-
-bool Player::needs_frames() const
-{
-    return display_ && !report_.levels.empty() &&
-           report_.levels.back().frame_ms.size() < options_.frames;
 }
 
 bool Player::reached_end() const

@@ -1,12 +1,12 @@
 #pragma once
 
 #include "connection.h"
-#include "display.h"
+#include "fetch_plan.h"
 #include "options.h"
+#include "presenter.h"
 #include "refiner.h"
 #include "report.h"
 
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -31,8 +31,6 @@ public:
     [[nodiscard]] const Report& report() const { return report_; }
 
 private:
-    using Clock = std::chrono::steady_clock;
-
     [[nodiscard]] Result<void> play();
     [[nodiscard]] Result<void> read_header();
     [[nodiscard]] Result<void> plan();
@@ -40,30 +38,30 @@ private:
     [[nodiscard]] Result<void> feed_header();
     [[nodiscard]] Result<void> refine();
     [[nodiscard]] Result<void> pump_bytes();
-    [[nodiscard]] Result<void> account(const Progress& progress);
+    bool skip_left_out();
     [[nodiscard]] Result<void> wait_or_draw();
     [[nodiscard]] Result<void> accept_end_of_transfer();
     [[nodiscard]] Result<void> finish();
+    [[nodiscard]] bool wants(const codec::ChunkInfo& chunk) const;
+    [[nodiscard]] std::vector<ByteRange> find_unwanted() const;
+    void leave_out_unwanted();
     void await_goodbye();
-    void draw_frame();
-    void print_last_row();
-    [[nodiscard]] double elapsed() const;
-    [[nodiscard]] bool needs_frames() const;
     [[nodiscard]] bool reached_end() const;
 
     const Options& options_;
     std::ostream& out_;
     Report report_;
-    LevelRow next_row_;
-    std::unique_ptr<Display> display_;
-    Clock::time_point start_;
-    Clock::time_point next_frame_;
+    Presenter presenter_;
     std::unique_ptr<Connection> connection_;
     std::vector<std::byte> header_;
-    codec::StreamInfo info_;   ///< Of the whole stream.
-    std::uint32_t level_ = 0;  ///< The finest level that will be decoded.
-    std::uint64_t end_ = 0;    ///< Length of the prefix that will be decoded.
-    bool restricted_ = false;  ///< The stop was moved forward during the transfer.
+    codec::StreamInfo info_;           ///< Of the whole stream.
+    StopPlan stop_;                    ///< What the server was told.
+    std::vector<ByteRange> unwanted_;  ///< Likewise.
+    std::uint32_t level_ = 0;          ///< The finest level that will be decoded.
+    std::uint32_t texture_limit_ = 0;  ///< Longest side of a texture, pixels.
+    std::uint64_t end_ = 0;            ///< Length of the prefix that will be decoded.
+    bool restricted_ = false;          ///< The stop was moved forward during the transfer.
+    bool knows_materials_ = false;     ///< unwanted_ was chosen with them.
     std::unique_ptr<Refiner> refiner_;
     std::vector<std::byte> block_;
 };

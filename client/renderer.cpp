@@ -101,6 +101,9 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const RenderOptions& options)
     renderer->context_ = std::move(*context);
     renderer->objects_ = std::make_unique<Objects>();
     VSPLIT_TRY(renderer->build());
+    auto surface = SurfaceRenderer::create();
+    VSPLIT_TRY(surface);
+    renderer->surface_ = std::move(*surface);
     return renderer;
 }
 
@@ -188,6 +191,18 @@ void Renderer::upload(GpuBuffers& buffers)
     face_count_ = static_cast<std::uint32_t>(buffers.triangles().size());
 }
 
+Result<void> Renderer::show(const SurfaceArrays& arrays)
+{
+    VSPLIT_TRY(surface_->upload(arrays));
+    if (options_.wireframe)
+    {
+        const auto faces = static_cast<std::uint32_t>(arrays.triangles.size());
+        VSPLIT_TRY(reserve(0, faces));
+        upload_lines(arrays.triangles, {0, faces});
+    }
+    return {};
+}
+
 void Renderer::upload_lines(std::span<const Triangle> triangles, const ElementRange& range)
 {
     if (!options_.wireframe)
@@ -224,15 +239,12 @@ void Renderer::draw_scene(const View& view) const
     glDrawArrays(GL_TRIANGLES, 0, 3);
 
     glEnable(GL_DEPTH_TEST);
-    glBindVertexArray(gl.model_array);
-    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, gl.index_buffer);
     if (options_.wireframe)
     {
         glEnable(GL_POLYGON_OFFSET_FILL);
         glPolygonOffset(1.0F, 1.0F);
     }
-    gl.model.use(view);
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * face_count_), GL_UNSIGNED_INT, nullptr);
+    draw_model(view);
     if (options_.wireframe)
     {
         glDisable(GL_POLYGON_OFFSET_FILL);
@@ -241,17 +253,41 @@ void Renderer::draw_scene(const View& view) const
     glBindVertexArray(0);
 }
 
+void Renderer::draw_model(const View& view) const
+{
+    if (surface_->has_surface())
+    {
+        surface_->draw(view);
+        return;
+    }
+    const Objects& gl = *objects_;
+    glBindVertexArray(gl.model_array);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, gl.index_buffer);
+    gl.model.use(view);
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * face_count_), GL_UNSIGNED_INT, nullptr);
+}
+
 void Renderer::draw_lines(const View& view) const
 {
     const Objects& gl = *objects_;
+    const bool surface = surface_->has_surface();
+    const std::uint32_t faces = surface ? surface_->face_count() : face_count_;
+    if (surface)
+    {
+        surface_->bind_arrays();
+    }
+    else
+    {
+        glBindVertexArray(gl.model_array);
+    }
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     glDepthFunc(GL_LEQUAL);
     glDepthMask(GL_FALSE);
     gl.lines.use(view);
-    glUniform1f(gl.lines.opacity, line_opacity(options_, face_count_));
+    glUniform1f(gl.lines.opacity, line_opacity(options_, faces));
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, gl.line_buffer);
-    glDrawElements(GL_LINES, static_cast<GLsizei>(6 * face_count_), GL_UNSIGNED_INT, nullptr);
+    glDrawElements(GL_LINES, static_cast<GLsizei>(6 * faces), GL_UNSIGNED_INT, nullptr);
     glDepthMask(GL_TRUE);
     glDepthFunc(GL_LESS);
     glDisable(GL_BLEND);

@@ -3,6 +3,7 @@
 #include "core/result.h"
 #include "gpu_buffers.h"
 #include "image.h"
+#include "surface_renderer.h"
 #include "view.h"
 
 #include <cstdint>
@@ -42,6 +43,13 @@ public:
     /// Precondition: the arrays fit what was reserved. Cost: linear in the dirty ranges.
     void upload(GpuBuffers& buffers);
 
+    /// Replaces the model by a level with attributes, drawn instead of what upload() gets.
+    /// Error: LimitExceeded when the driver has no memory for it.
+    [[nodiscard]] Result<void> show(const SurfaceArrays& arrays);
+
+    /// Materials and textures of levels with attributes.
+    [[nodiscard]] SurfaceRenderer& surface() { return *surface_; }
+
     /// Draws one frame and waits until it is finished.
     void draw(const View& view);
 
@@ -54,12 +62,14 @@ private:
     explicit Renderer(const RenderOptions& options);
     [[nodiscard]] Result<void> build();
     void draw_scene(const View& view) const;
+    void draw_model(const View& view) const;
     void draw_lines(const View& view) const;
     void upload_lines(std::span<const Triangle> triangles, const ElementRange& range);
 
     RenderOptions options_;
     std::unique_ptr<GlContext> context_;
     std::unique_ptr<Objects> objects_;
+    std::unique_ptr<SurfaceRenderer> surface_;
     std::uint32_t face_count_ = 0;
 };
 

@@ -36,10 +36,16 @@ json to_json(const LevelRow& row)
         {"level", row.level},
         {"vertices", row.vertices},
         {"faces", row.faces},
-        {"chunk_bytes", row.chunk_bytes},
+        {"chunk_bytes", row.bytes.sum()},
+        {"geometry_bytes", row.bytes.geometry},
+        {"attribute_bytes", row.bytes.attributes},
+        {"texture_bytes", row.bytes.textures},
         {"cumulative_bytes", row.cumulative_bytes},
         {"seconds", round_to_micro(row.seconds)},
         {"decode_ms", round_to_micro(row.decode_ms)},
+        {"images", row.images},
+        {"image_ms", round_to_micro(row.image_ms)},
+        {"texture_memory_bytes", row.texture_memory_bytes},
         {"frames", row.frame_ms.size()},
         {"frame_ms_median", round_to_micro(times.median_ms)},
         {"frame_ms_p95", round_to_micro(times.p95_ms)},
@@ -79,21 +85,35 @@ FrameTimes summarize(std::span<const double> frame_ms)
 nlohmann::ordered_json to_json(const Report& report)
 {
     json levels = json::array();
+    LevelRow sum;
     for (const LevelRow& row : report.levels)
     {
         levels.push_back(to_json(row));
+        sum.bytes += row.bytes;
+        sum.images += row.images;
+        sum.image_ms += row.image_ms;
     }
     return {
         {"model", report.model},
         {"device", report.device},
         {"link", report.link},
         {"memory",
-         {{"cap_bytes", report.memory_cap_bytes}, {"planned_bytes", report.memory_planned_bytes}}},
+         {
+             {"cap_bytes", report.memory_cap_bytes},
+             {"planned_bytes", report.memory_planned_bytes},
+             {"texture_planned_bytes", report.texture_planned_bytes},
+             {"texture_limit", report.texture_limit},
+         }},
         {"levels", std::move(levels)},
         {"totals",
          {
              {"payload_bytes", report.transferred.payload_bytes},
              {"wire_bytes", report.transferred.wire_bytes},
+             {"geometry_bytes", sum.bytes.geometry},
+             {"attribute_bytes", sum.bytes.attributes},
+             {"texture_bytes", sum.bytes.textures},
+             {"images", sum.images},
+             {"image_ms", round_to_micro(sum.image_ms)},
              {"seconds", round_to_micro(report.seconds)},
              {"reconnects", report.transferred.reconnects},
              {"complete", report.complete},
@@ -101,23 +121,28 @@ nlohmann::ordered_json to_json(const Report& report)
     };
 }
 
-std::string table_head()
+std::string table_head(const Report& report)
 {
-    return "level   vertices  triangles      bytes      total   seconds  decode  frames"
-           "  median     p95     fps  memory\n"
-           "                                                          s      ms"
-           "              ms      ms             MB";
+    const std::string first =
+        "level   vertices  triangles      bytes      total   seconds  decode  frames"
+        "  median     p95     fps  memory";
+    const std::string second =
+        "                                                          s      ms"
+        "              ms      ms             MB";
+    return report.surface ? first + "  geometry  attribs  textures  images  decode  textures\n" +
+                                second + "     bytes    bytes     bytes              ms        MB"
+                          : first + "\n" + second;
 }
 
-std::string table_row(const LevelRow& row)
+std::string table_row(const Report& report, const LevelRow& row)
 {
     const FrameTimes times = summarize(row.frame_ms);
-    return format(
+    const std::string common = format(
         "%5u %10u %10u %10llu %10llu %9.3f %7.2f %7zu %7.2f %7.2f %7.1f %7.1f",
         row.level,
         row.vertices,
         row.faces,
-        static_cast<unsigned long long>(row.chunk_bytes),
+        static_cast<unsigned long long>(row.bytes.sum()),
         static_cast<unsigned long long>(row.cumulative_bytes),
         row.seconds,
         row.decode_ms,
@@ -127,6 +152,19 @@ std::string table_row(const LevelRow& row)
         times.fps,
         static_cast<double>(row.resident_bytes) / 1e6
     );
+    if (!report.surface)
+    {
+        return common;
+    }
+    return common + format(
+                        " %9llu %8llu %9llu %7zu %7.2f %9.2f",
+                        static_cast<unsigned long long>(row.bytes.geometry),
+                        static_cast<unsigned long long>(row.bytes.attributes),
+                        static_cast<unsigned long long>(row.bytes.textures),
+                        row.images,
+                        row.image_ms,
+                        static_cast<double>(row.texture_memory_bytes) / 1e6
+                    );
 }
 
 std::string totals_line(const Report& report)

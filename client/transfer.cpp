@@ -48,13 +48,16 @@ void Transfer::start_connection()
 Result<std::vector<std::byte>> Transfer::open(const StopPlan& stop)
 {
     VSPLIT_ASSERT(state_ == State::Idle || state_ == State::Done);
+    pass_gaps();
+    limit_ =
+        unwanted_.empty() ? std::numeric_limits<std::uint64_t>::max() : unwanted_.front().begin;
     wire::Open open;
     open.model = request_.model;
     open.client = kClientName;
     open.start = received_;
     open.content_id = content_id_;
     open.stop.level = stop.condition.level;
-    open.stop.bytes = stop.condition.bytes;
+    open.stop.bytes = std::min(stop.condition.bytes, limit_);
     open.stop.faces = stop.condition.faces;
     open.stop.error = std::max(0.0, stop.condition.error);  // 0 is "none" on the wire.
     open.stop.error_unit =
@@ -62,9 +65,25 @@ Result<std::vector<std::byte>> Transfer::open(const StopPlan& stop)
     open.screen_width = saturate(request_.screen_width);
     open.screen_height = saturate(request_.screen_height);
     open.memory_bytes = request_.memory_bytes;
+    open.max_texture_size = request_.texture_limit;
     state_ = State::Opened;
     cancelled_ = false;
     return wire::encode(open);
+}
+
+void Transfer::pass_gaps()
+{
+    std::size_t passed = 0;
+    for (; passed < unwanted_.size() && unwanted_[passed].begin <= received_; ++passed)
+    {
+        // What lies before was received before it was known to be unwanted.
+        if (unwanted_[passed].begin == received_)
+        {
+            gaps_.push_back(unwanted_[passed]);
+            received_ = unwanted_[passed].end;
+        }
+    }
+    unwanted_.erase(unwanted_.begin(), unwanted_.begin() + static_cast<std::ptrdiff_t>(passed));
 }
 
 std::vector<std::byte> Transfer::cancel()
@@ -164,6 +183,7 @@ Result<void> Transfer::accept_done(std::span<const std::byte> payload)
         return broken("it ended the transfer early", received_);
     }
     state_ = State::Done;
+    pass_gaps();
     return {};
 }
 

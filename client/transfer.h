@@ -2,6 +2,7 @@
 
 #include "codec/stream_info.h"
 #include "core/result.h"
+#include "fetch_plan.h"
 #include "wire/frame.h"
 
 #include <cstddef>
@@ -9,6 +10,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace vsplit::client {
@@ -27,6 +29,7 @@ struct TransferRequest
     std::uint32_t screen_width = 0;   ///< Pixels.
     std::uint32_t screen_height = 0;  ///< Pixels.
     std::uint64_t memory_bytes = 0;
+    std::uint32_t texture_limit = 0;  ///< Largest side of a texture, pixels; 0 unknown.
 };
 
 /// The client's side of the conversation (proto/WIRE_PROTOCOL.md), without sockets: it makes the
@@ -49,6 +52,19 @@ public:
     /// Precondition: no Open is unanswered. Error: BadRequest for a name that no server accepts.
     [[nodiscard]] Result<std::vector<std::byte>> open(const StopPlan& stop);
 
+    /// Sets what to leave out from the next Open on, one range a chunk, ascending; what was received is
+    /// not affected. Open then asks for the bytes up to the next of them, and once again for the rest.
+    void leave_out(std::vector<ByteRange> ranges) { unwanted_ = std::move(ranges); }
+
+    /// True when the last Open was answered and ended only because of what is left out.
+    [[nodiscard]] bool has_more() const
+    {
+        return done() && end_ == limit_ && received_ < file_bytes_;
+    }
+
+    /// What was left out since the last call: the bytes that the sink gets next follow them.
+    [[nodiscard]] std::vector<ByteRange> take_gaps() { return std::exchange(gaps_, {}); }
+
     /// Returns the frame that ends the transfer early. The answer still has to be awaited.
     [[nodiscard]] std::vector<std::byte> cancel();
 
@@ -60,7 +76,7 @@ public:
     /// True when the last Open was answered to its end.
     [[nodiscard]] bool done() const { return state_ == State::Done; }
 
-    /// Bytes of the stream file received so far, all connections together.
+    /// Bytes of the stream file received or left out so far, all connections together.
     [[nodiscard]] std::uint64_t received() const { return received_; }
 
 private:
@@ -72,6 +88,7 @@ private:
         Done,       // The last Open was answered.
     };
 
+    void pass_gaps();
     [[nodiscard]] Result<void> handle(const wire::Frame& frame, const Sink& sink);
     [[nodiscard]] Result<void> accept_info(std::span<const std::byte> payload);
     [[nodiscard]] Result<void> accept_data(std::span<const std::byte> payload, const Sink& sink);
@@ -84,7 +101,10 @@ private:
     std::uint64_t content_id_ = 0;
     std::uint64_t file_bytes_ = 0;
     std::uint64_t end_ = 0;
+    std::uint64_t limit_ = 0;  // Where the last Open stopped for what is left out.
     std::uint64_t received_ = 0;
+    std::vector<ByteRange> unwanted_;
+    std::vector<ByteRange> gaps_;
 };
 
 }  // namespace vsplit::client

@@ -19,12 +19,6 @@ constexpr std::size_t kFullChunk = 48U * 1024U;
 /// Values after which the length is looked at.
 constexpr std::uint32_t kStep = 512;
 
-/// Vertices, by those of the last level with attributes, from which a level gets attributes. A chunk costs
-/// about nine bytes of its own, which small meshes feel.
-constexpr double kFiner = 1.15;
-constexpr double kFinerIfSmall = 1.6;
-constexpr std::uint32_t kSmallMesh = 8000;
-
 /// Normals by which styles are compared.
 constexpr std::uint32_t kTriedNormals = 4000;
 
@@ -179,7 +173,7 @@ public:
             {
                 collect_levels();
             }
-            if (step->kind == StepKind::Chunk && step->level_complete && is_due(*step))
+            if (step->kind == StepKind::Chunk && step->level_complete)
             {
                 VSPLIT_TRY(code_level(step->level, chunk, step->triangles_replaced));
             }
@@ -211,20 +205,6 @@ private:
                 faces_[level - 1] = replay.faces();
             }
         }
-    }
-
-    /// Levels get attributes when they are that much finer than the last one that did, and the last one.
-    [[nodiscard]] bool is_due(const Step& step)
-    {
-        const bool small = decoder_.info()->vertex_count < kSmallMesh;
-        const double finer = small ? kFinerIfSmall : kFiner;
-        const bool last = step.level + 1 == decoder_.info()->levels.size();
-        if (!last && step.vertices < finer * attributed_vertices_)
-        {
-            return false;
-        }
-        attributed_vertices_ = step.vertices;
-        return true;
     }
 
     /// Finds the source's wedges at the corners of every slot.
@@ -345,7 +325,6 @@ private:
     AttributeSource source_;
     std::vector<std::vector<LevelFace>> faces_;  ///< By level, sorted.
     std::vector<ExtraChunk> chunks_;
-    std::uint32_t attributed_vertices_ = 0;
 };
 
 }  // namespace

@@ -35,6 +35,17 @@ namespace vsplit::codec {
     const std::array<std::int32_t, 3>& extent
 );
 
+/// Decodes a Parts chunk of codec 0.
+/// `info`: of the stream; `bytes`: the chunk's contents; `vertices`, `faces`: that it adds; `shift`: of the
+/// level that it adds them to. Result and error as decode_small_base()'s. Safe on untrusted input.
+[[nodiscard]] Result<GridMesh> decode_parts_chunk(
+    const StreamInfo& info,
+    std::span<const std::byte> bytes,
+    std::uint32_t vertices,
+    std::uint32_t faces,
+    int shift
+);
+
 /// Decodes the base chunk of a stream with the codec that its row names.
 /// `info`: of the stream; `bytes`: the chunk's contents. Result and error as above. Safe on untrusted
 /// input.

@@ -265,7 +265,9 @@ Result<EncodedBase> encode_draco_base(const GridMesh& base)
     return result ? std::move(result) : encode_and_match(base, false);
 }
 
-EncodedBase encode_small_base(const GridMesh& base, const std::array<std::int32_t, 3>& extent)
+EncodedBase encode_small_base(
+    const GridMesh& base, const std::array<std::int32_t, 3>& extent, ComponentStart start
+)
 {
     const SmallBaseSource source(base);
     const std::size_t corners = base.triangles.size() * 3;
@@ -280,6 +282,7 @@ EncodedBase encode_small_base(const GridMesh& base, const std::array<std::int32_
             static_cast<std::uint32_t>(base.positions.size()),
             static_cast<std::uint32_t>(base.triangles.size()),
             extent,
+            start,
             &source
         );
         if (!coder.run(seed))
@@ -307,7 +310,7 @@ Result<EncodedBase> encode_base_mesh(
     {
         return encode_draco_base(base);
     }
-    EncodedBase small = encode_small_base(base, extent);
+    EncodedBase small = encode_small_base(base, extent, ComponentStart::Centre);
     // A Draco mesh takes more than this before it says anything.
     constexpr std::size_t kDracoBytes = 60;
     if (!small.bytes.empty() && small.bytes.size() <= kDracoBytes)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "codec/small_base_limits.h"
 #include "core/result.h"
 #include "format.h"
 #include "mesh/indexed_mesh.h"
@@ -28,9 +29,11 @@ struct EncodedBase
 /// Codes a base mesh with kSmallBaseCodec, beginning at the face from which it takes the fewest bytes
 /// when it is small enough to try all.
 /// `base`: as above, at most kMaxSmallBaseVertices vertices and kMaxSmallBaseFaces faces a vertex;
-/// `extent`: largest coordinate per axis on the base's grid.
+/// `extent`: largest coordinate per axis on the base's grid. Result: without bytes when that fails.
 [[nodiscard]] EncodedBase encode_small_base(
-    const GridMesh& base, const std::array<std::int32_t, 3>& extent
+    const GridMesh& base,
+    const std::array<std::int32_t, 3>& extent,
+    ComponentStart start = ComponentStart::Centre
 );
 
 /// Codes a base mesh with the codec that takes fewer bytes. Arguments and error as above.

@@ -6,6 +6,7 @@
 #include "codec/context_model.h"
 #include "codec/error_scale.h"
 #include "codec/float_log.h"
+#include "codec/small_base_limits.h"
 #include "codec/split_cost.h"
 #include "format.h"
 
@@ -22,16 +23,17 @@ struct IndexRow
     proto::ChunkKind kind = proto::ChunkKind::Batch;
     std::uint8_t codec = 0;
     std::uint32_t bytes = 0;  ///< Length of the chunk, checksum included.
-    /// Base: of the mesh; Batch: that the chunk adds; first Growth chunk: of the complete mesh.
+    /// Base: of the mesh; Batch, Parts: that the chunk adds; first Growth chunk: of the complete mesh.
     std::uint32_t vertices = 0;
     std::uint32_t boundary = 0;  ///< Batch: how many of them split a boundary.
-    std::uint32_t faces = 0;     ///< Base, and Growth as below.
+    std::uint32_t faces = 0;     ///< Base; Parts: that the chunk adds; Growth as below.
     int shift = 0;               ///< Base and first chunk of a level: the level's shift.
     std::uint32_t rms_code = 0;  ///< Base and last chunk of a level: its errors.
     std::uint32_t max_code = 0;
     std::uint32_t level_chunks = 0;    ///< First chunk of a level: chunks of the level.
     std::uint32_t level_vertices = 0;  ///< First chunk of a level: what the level adds.
     std::uint32_t tag = 0;             ///< Of optional kinds, see ChunkInfo.
+    bool ends_parts = false;           ///< Parts: the last chunk of its level.
 };
 
 /// Builds the model of an integer that typically is below 2^`size`. `nonzero`: probability, 1/65536, that
@@ -140,7 +142,7 @@ public:
     /// Codes the rest of the row of a Batch chunk. Result: false when a value is out of range.
     [[nodiscard]] bool code_batch(IndexRow& row)
     {
-        if (grown_ || (chunks_left_ == 0 && !code_level(row)))
+        if (grown_ || parts_open_ || (chunks_left_ == 0 && !code_level(row)))
         {
             return false;
         }
@@ -166,7 +168,31 @@ public:
         vertices_ += row.vertices;
         vertices_left_ -= row.vertices;
         --chunks_left_;
-        return chunks_left_ > 0 || code_errors(row);
+        return chunks_left_ > 0 || code_errors(row, level_start_, drop_);
+    }
+
+    /// Codes the rest of the row of a Parts chunk. Result: false when a value is out of range, a level of
+    /// splits is open or the mesh has grown.
+    [[nodiscard]] bool code_parts(IndexRow& row)
+    {
+        if (grown_ || chunks_left_ != 0)
+        {
+            return false;
+        }
+        parts_start_ = parts_open_ ? parts_start_ : vertices_;
+        row.vertices = code_number(row.vertices);
+        row.faces = code_number(row.faces);
+        row.bytes = code_number(row.bytes);
+        row.ends_parts = coder_.raw(row.ends_parts ? 1 : 0, 1) != 0;
+        parts_open_ = !row.ends_parts;
+        if (row.vertices < 3 || row.vertices > kMaxSmallBaseVertices || row.faces < 1 ||
+            row.faces > kMaxSmallBaseFaces * row.vertices || row.bytes > kMostBytes ||
+            row.vertices > proto::kMaxVertices - vertices_)
+        {
+            return false;
+        }
+        vertices_ += row.vertices;
+        return parts_open_ || code_errors(row, parts_start_, 0);
     }
 
     /// Codes the rest of the row of a Growth chunk; the first one tells of the whole level.
@@ -174,7 +200,7 @@ public:
     [[nodiscard]] bool code_growth(IndexRow& row)
     {
         const bool starts = chunks_left_ == 0;
-        if (starts == grown_)
+        if (starts == grown_ || parts_open_)
         {
             return false;
         }
@@ -193,7 +219,7 @@ public:
             chunks_left_ = row.level_chunks;
             level_start_ = vertices_;
             vertices_ = row.vertices;
-            if (!code_errors(row))
+            if (!code_errors(row, level_start_, drop_))
             {
                 return false;
             }
@@ -204,7 +230,7 @@ public:
     }
 
     /// Tells whether the last row ended a level.
-    [[nodiscard]] bool level_complete() const { return chunks_left_ == 0; }
+    [[nodiscard]] bool level_complete() const { return chunks_left_ == 0 && !parts_open_; }
 
     /// Codes a number below 2^31 of which nothing is known.
     [[nodiscard]] std::uint32_t code_number(std::uint32_t number)
@@ -327,14 +353,15 @@ private:
         return value >= 0 && value <= static_cast<std::int32_t>(kZeroErrorCode);
     }
 
-    [[nodiscard]] bool code_errors(IndexRow& row)
+    /// Codes the errors of a level that started with `start` vertices and `drop` bits of precision more.
+    [[nodiscard]] bool code_errors(IndexRow& row, std::uint32_t start, int drop)
     {
         const auto log = [](std::uint32_t count) {
             return steps_log2<3>(static_cast<float>(count));
         };
         const auto before = static_cast<std::int32_t>(rms_code_);
-        const std::int32_t expected = before + log(vertices_) - log(level_start_);
-        if (!code_error(model_.rms, row.rms_code, expected, drop_ > 0 ? 1 : 0))
+        const std::int32_t expected = before + log(vertices_) - log(start);
+        if (!code_error(model_.rms, row.rms_code, expected, drop > 0 ? 1 : 0))
         {
             return false;
         }
@@ -367,6 +394,8 @@ private:
     int drop_ = 0;                 ///< Bits of precision that the level's start adds.
     std::uint32_t unrefined_ = 0;  ///< Vertices that lack them.
     bool grown_ = false;
+    bool parts_open_ = false;        ///< More Parts chunks of the level are to come.
+    std::uint32_t parts_start_ = 0;  ///< Vertices when a level of parts started.
     std::uint32_t rms_code_ = 0;
     std::uint32_t max_code_ = 0;
 };

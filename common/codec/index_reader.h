@@ -88,8 +88,15 @@ private:
         {
             return index_.code_base(row);
         }
-        return row.kind == proto::ChunkKind::Growth ? index_.code_growth(row)
-                                                    : index_.code_batch(row);
+        switch (row.kind)
+        {
+            case proto::ChunkKind::Growth:
+                return index_.code_growth(row);
+            case proto::ChunkKind::Parts:
+                return index_.code_parts(row);
+            default:
+                return index_.code_batch(row);
+        }
     }
 
     static tl::unexpected<Error> unknown_chunk(const IndexRow& row)
@@ -104,8 +111,9 @@ private:
     /// Checks the kind of any row but the base's.
     static Result<void> check_kind(const IndexRow& row)
     {
-        const bool known =
-            row.kind == proto::ChunkKind::Batch || row.kind == proto::ChunkKind::Growth;
+        const bool known = row.kind == proto::ChunkKind::Batch ||
+                           row.kind == proto::ChunkKind::Growth ||
+                           row.kind == proto::ChunkKind::Parts;
         if (is_optional(row.kind) || (known && row.codec == 0))
         {
             return {};
@@ -127,8 +135,9 @@ private:
         {
             return fail(ErrorCode::BadHeader, "the base mesh has no precision");
         }
-        const std::uint64_t faces =
-            base ? row.faces : last_.faces + 2ULL * row.vertices - row.boundary;
+        const std::uint64_t faces = row.kind == proto::ChunkKind::Batch
+                                        ? last_.faces + 2ULL * row.vertices - row.boundary
+                                        : std::uint64_t{last_.faces} + row.faces;
         last_.vertices += row.vertices;
         if (faces > proto::kMaxFaces)
         {

@@ -36,52 +36,73 @@ void RefinementMesh::reserve(std::uint32_t vertices, std::uint32_t faces)
 
 Result<void> RefinementMesh::set_base(const GridMesh& base, std::int32_t max_index)
 {
-    auto done = take_base(base, max_index);
+    vertex_count_ = 0;
+    face_count_ = 0;
+    batch_start_ = 0;
+    return add_parts(base, max_index);
+}
+
+Result<void> RefinementMesh::add_parts(const GridMesh& parts, std::int32_t max_index)
+{
+    finish_batch();
+    const std::uint32_t vertices = vertex_count_;
+    const std::uint32_t faces = face_count_;
+    auto done = take(parts, max_index);
     if (!done)
     {
-        vertex_count_ = 0;
-        face_count_ = 0;
+        vertex_count_ = vertices;
+        face_count_ = faces;
     }
     batch_start_ = face_count_;
     return done;
 }
 
-Result<void> RefinementMesh::take_base(const GridMesh& base, std::int32_t max_index)
+/// Appends a mesh and links its faces to each other.
+Result<void> RefinementMesh::take(const GridMesh& mesh, std::int32_t max_index)
 {
-    vertex_count_ = static_cast<std::uint32_t>(base.positions.size());
-    face_count_ = static_cast<std::uint32_t>(base.triangles.size());
-    VSPLIT_ASSERT(vertex_count_ <= points_.size() && face_count_ <= face_capacity());
-    for (std::uint32_t v = 0; v < vertex_count_; ++v)
+    const std::uint32_t first_vertex = vertex_count_;
+    const std::uint32_t first_face = face_count_;
+    const auto vertices = static_cast<std::uint32_t>(mesh.positions.size());
+    const auto triangles = static_cast<std::uint32_t>(mesh.triangles.size());
+    VSPLIT_ASSERT(vertices <= points_.size() - first_vertex);
+    VSPLIT_ASSERT(triangles <= face_capacity() - first_face);
+    vertex_count_ += vertices;
+    face_count_ += triangles;
+    for (std::uint32_t v = 0; v < vertices; ++v)
     {
-        for (const std::int32_t coordinate : base.positions[v])
+        for (const std::int32_t coordinate : mesh.positions[v])
         {
             if (coordinate < 0 || coordinate > max_index)
             {
                 return fail(ErrorCode::BadChunk, "a base vertex lies outside the grid");
             }
         }
-        const auto& [x, y, z] = base.positions[v];
-        points_[v] = Point{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
+        const auto& [x, y, z] = mesh.positions[v];
+        points_[first_vertex + v] =
+            Point{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
     }
-    for (std::uint32_t f = 0; f < face_count_; ++f)
+    for (std::uint32_t f = 0; f < triangles; ++f)
     {
-        const Triangle& triangle = base.triangles[f];
-        if (std::ranges::any_of(triangle, [&](std::uint32_t v) { return v >= vertex_count_; }) ||
-            triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0])
+        const auto& [a, b, c] = mesh.triangles[f];
+        if (std::max({a, b, c}) >= vertices || a == b || b == c || c == a)
         {
             return fail(ErrorCode::BadChunk, "a base triangle is malformed");
         }
-        faces()[f] = Face{.vertex = triangle, .slot = f};
+        faces()[first_face + f] = Face{
+            .vertex = {first_vertex + a, first_vertex + b, first_vertex + c},
+            .slot = first_face + f,
+        };
     }
-    VSPLIT_TRY(link_base());
-    return check_fans();
+    VSPLIT_TRY(link_from(first_face));
+    return check_fans(first_vertex, first_face);
 }
 
-Result<void> RefinementMesh::link_base()
+/// Links the faces from `first_face` on, which share vertices with no other.
+Result<void> RefinementMesh::link_from(std::uint32_t first_face)
 {
     std::vector<EdgeKey> edges;
-    edges.reserve(std::size_t{face_count_} * 3);
-    for (std::uint32_t f = 0; f < face_count_; ++f)
+    edges.reserve(std::size_t{face_count_ - first_face} * 3);
+    for (std::uint32_t f = first_face; f < face_count_; ++f)
     {
         for (Corner k = 0; k < 3; ++k)
         {
@@ -111,20 +132,20 @@ Result<void> RefinementMesh::link_base()
     return {};
 }
 
-Result<void> RefinementMesh::check_fans()
+Result<void> RefinementMesh::check_fans(std::uint32_t first_vertex, std::uint32_t first_face)
 {
-    std::vector<std::uint32_t> corners(vertex_count_, 0);
-    std::vector<Corner> some(vertex_count_, -1);
-    for (std::uint32_t f = 0; f < face_count_; ++f)
+    std::vector<std::uint32_t> corners(vertex_count_ - first_vertex, 0);
+    std::vector<Corner> some(vertex_count_ - first_vertex, -1);
+    for (std::uint32_t f = first_face; f < face_count_; ++f)
     {
         for (Corner k = 0; k < 3; ++k)
         {
             const Corner corner = static_cast<Corner>(f) * 4 + k;
-            ++corners[vertex(corner)];
-            some[vertex(corner)] = corner;
+            ++corners[vertex(corner) - first_vertex];
+            some[vertex(corner) - first_vertex] = corner;
         }
     }
-    for (std::uint32_t v = 0; v < vertex_count_; ++v)
+    for (std::uint32_t v = 0; v < some.size(); ++v)
     {
         if (some[v] < 0)
         {
@@ -151,7 +172,7 @@ Result<void> RefinementMesh::check_fans()
         {
             return fail(ErrorCode::BadChunk, "the base mesh has a non-manifold vertex");
         }
-        valences_[v] = static_cast<std::uint16_t>(
+        valences_[first_vertex + v] = static_cast<std::uint16_t>(
             std::min<std::uint32_t>(kManyNeighbours, corners[v] + (closed ? 0U : 1U))
         );
     }

@@ -134,6 +134,12 @@ public:
     /// Precondition: it fits the reservation. Safe on untrusted input.
     [[nodiscard]] Result<void> set_base(const GridMesh& base, std::int32_t max_index);
 
+    /// Ends the batch before, as start_batch() does, and puts components behind everything that is there:
+    /// their vertices get the next numbers, their triangles the next slots and the next places.
+    /// Arguments, errors and precondition as set_base()'s; after an error the mesh is as it was before.
+    /// Safe on untrusted input.
+    [[nodiscard]] Result<void> add_parts(const GridMesh& parts, std::int32_t max_index);
+
     /// Ends the batch before, if there was one: its new faces move beside the face whose wedge they came
     /// from, so that neighbours stay close in memory; slots do not change. Then prepares the next one:
     /// measures every edge and frees every face. Faces 0 .. face_count() - 1 are in order then.
@@ -204,9 +210,9 @@ private:
     void assign_places();
     void sort_in_added();
     void follow_places();
-    [[nodiscard]] Result<void> take_base(const GridMesh& base, std::int32_t max_index);
-    [[nodiscard]] Result<void> link_base();
-    [[nodiscard]] Result<void> check_fans();
+    [[nodiscard]] Result<void> take(const GridMesh& mesh, std::int32_t max_index);
+    [[nodiscard]] Result<void> link_from(std::uint32_t first_face);
+    [[nodiscard]] Result<void> check_fans(std::uint32_t first_vertex, std::uint32_t first_face);
     std::int32_t add_face(std::array<std::uint32_t, 3> vertices, const Face& like);
     void split_right(const Split& split, std::uint32_t kept, std::uint32_t removed);
     void split_left(const Split& split, Corner last, std::uint32_t kept, std::uint32_t removed);

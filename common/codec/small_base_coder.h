@@ -4,6 +4,7 @@
 // a growing region is crossed edge by edge). For meshes so small that any table would cost more than it
 // saves. Encoder and decoder run this same code; only the bit coder and the source differ.
 
+#include "codec/small_base_limits.h"
 #include "codec/small_base_model.h"
 #include "mesh/indexed_mesh.h"
 
@@ -17,12 +18,6 @@
 
 namespace vsplit::codec {
 
-/// Most vertices of a base that SmallBaseCoder codes: its time grows with their square.
-inline constexpr std::uint32_t kMaxSmallBaseVertices = 4096;
-
-/// Most faces of such a base per vertex, which bounds its memory.
-inline constexpr std::uint32_t kMaxSmallBaseFaces = 3;
-
 /// Codes a small base mesh by growing a region over it. Not thread safe. Safe on untrusted input.
 template <typename Coder>
 class SmallBaseCoder
@@ -35,9 +30,15 @@ public:
         std::uint32_t vertices,
         std::uint32_t faces,
         const std::array<std::int32_t, 3>& extent,
+        ComponentStart start,
         const SmallBaseSource* source = nullptr
     )
-        : coder_(coder), vertices_(vertices), faces_(faces), extent_(extent), source_(source)
+        : coder_(coder),
+          vertices_(vertices),
+          faces_(faces),
+          extent_(extent),
+          start_(start),
+          source_(source)
     {
         for (std::size_t axis = 0; axis < 3; ++axis)
         {
@@ -121,13 +122,15 @@ private:
         {
             wanted = first_of_component();
         }
+        const bool centred = start_ == ComponentStart::Centre || mesh_.positions.empty();
         Triangle triangle{};
         for (std::size_t k = 0; k < 3; ++k)
         {
             std::array<std::int32_t, 3> expected{};
             for (std::size_t axis = 0; axis < 3; ++axis)
             {
-                expected[axis] = k == 0 ? extent_[axis] / 2 : mesh_.positions.back()[axis];
+                expected[axis] =
+                    centred && k == 0 ? extent_[axis] / 2 : mesh_.positions.back()[axis];
             }
             triangle[k] = add_vertex(wanted[k], expected);
         }
@@ -322,6 +325,7 @@ private:
     std::uint32_t vertices_;
     std::uint32_t faces_;
     std::array<std::int32_t, 3> extent_;
+    ComponentStart start_;
     const SmallBaseSource* source_;
     std::array<IntegerModel, 3> coordinate_;
     std::array<AdaptiveBit, 4> new_vertex_{{{32768, 4}, {32768, 4}, {32768, 4}, {32768, 4}}};

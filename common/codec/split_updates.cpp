@@ -36,8 +36,9 @@ std::size_t SplitUpdates::read(Cursor& cursor, std::span<TriangleUpdate> out) co
 std::size_t SplitUpdates::read_all(Cursor& cursor, std::span<TriangleUpdate> out) const
 {
     const auto [old, added] = mesh_.face_ranges();
-    const bool in_old = cursor.item < old.size();
-    const auto rest = in_old ? old.subspan(cursor.item) : added.subspan(cursor.item - old.size());
+    const std::size_t first = first_shown_ + cursor.item;
+    const bool in_old = first < old.size();
+    const auto rest = in_old ? old.subspan(first) : added.subspan(first - old.size());
     const std::size_t count = std::min(rest.size(), out.size());
     std::ranges::transform(rest.first(count), out.begin(), update_of);
     cursor.item += count;

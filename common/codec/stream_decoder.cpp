@@ -26,6 +26,39 @@ Result<Step> StreamDecoder::step()
     return impl_->step();
 }
 
+Step StreamDecoder::Impl::skip()
+{
+    VSPLIT_ASSERT(next_chunk() != nullptr && is_optional(next_chunk()->kind) && filled() == 0);
+    Step step = current(StepKind::SkippedChunk);
+    step.chunk = next_chunk();
+    updates_.show({});
+    if (step.chunk->kind == proto::ChunkKind::Attributes)
+    {
+        // Later ones build on it.
+        attributes_ = {};
+        limits_.attributes = false;
+    }
+    decoded_ += step.chunk->bytes;
+    received_ += step.chunk->bytes;
+    ++next_;
+    return step;
+}
+
+const ChunkInfo* StreamDecoder::Impl::next_chunk() const
+{
+    return info_ && !complete() ? &info_->chunks[next_] : nullptr;
+}
+
+const ChunkInfo* StreamDecoder::next_chunk() const
+{
+    return impl_->next_chunk();
+}
+
+Step StreamDecoder::skip()
+{
+    return impl_->skip();
+}
+
 const StreamInfo* StreamDecoder::info() const
 {
     return impl_->info_ ? &*impl_->info_ : nullptr;

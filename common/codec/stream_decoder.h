@@ -44,6 +44,10 @@ struct Step
     /// True when the attributes of the level being shown are complete with this chunk; see
     /// StreamDecoder::attributes().
     bool attributes_complete = false;
+    const ChunkInfo* chunk = nullptr;  ///< The chunk that was applied or passed over, of info().
+    /// What an optional chunk holds, checked against its checksum; valid until the next feed(),
+    /// step() or skip(). Empty for others, and for a chunk that skip() passed over.
+    std::span<const std::byte> contents;
 };
 
 /// Turns the bytes of a stream, as they come, into a mesh that gets finer. Vertices are appended and
@@ -71,6 +75,13 @@ public:
     /// Does the next piece of work: the header, or one chunk.
     /// Errors: those of parse_stream_info; BadChecksum, BadChunk, LimitExceeded with the chunk's offset.
     [[nodiscard]] Result<Step> step();
+
+    /// The chunk that step() will decode next; nullptr before the header and after the last chunk.
+    [[nodiscard]] const ChunkInfo* next_chunk() const;
+
+    /// Passes over the next chunk, whose bytes are left out of what is fed.
+    /// Precondition: next_chunk() is of an optional kind and nothing of it was fed.
+    Step skip();
 
     /// Header and index; nullptr before the header was decoded.
     [[nodiscard]] const StreamInfo* info() const;
@@ -111,8 +122,9 @@ public:
     /// for most); empty when nothing was cut or the stream is not complete.
     [[nodiscard]] std::span<const std::uint32_t> stitches() const;
 
-    /// Attributes as of the last step with attributes_complete; nullptr as long as there are none. They
-    /// fit the triangles of the level that they came with, until the next chunk changes these.
+    /// Attributes of the last level that has all of them; nullptr as long as there are none and while those
+    /// of a level come. They fit the triangles of the level that they came with, until the next chunk
+    /// changes these.
     [[nodiscard]] const LevelAttributes* attributes() const;
 
     /// Copies the mesh shown with its neighbours and the positions on the level's grid, in the order of

@@ -7,6 +7,7 @@
 #include "codec/batch_coder.h"
 #include "codec/entropy_coder.h"
 #include "codec/growth_coder.h"
+#include "codec/index_reader.h"
 #include "codec/shown_mesh.h"
 #include "codec/split_updates.h"
 #include "codec/stitch_coder.h"
@@ -31,7 +32,7 @@ public:
     std::size_t wanted_bytes() const
     {
         const std::size_t needed = unit_bytes();
-        return error_ || needed < buffer_.size() ? 0 : needed - buffer_.size();
+        return error_ || needed < filled() ? 0 : needed - filled();
     }
 
     /// As StreamDecoder::feed().
@@ -42,6 +43,7 @@ public:
             return tl::unexpected<Error>(*error_);
         }
         const std::size_t taken = std::min(bytes.size(), wanted_bytes());
+        buffer_.resize(std::exchange(spent_, false) ? 0 : buffer_.size());
         buffer_.insert(
             buffer_.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(taken)
         );
@@ -60,7 +62,7 @@ public:
         {
             return current(StepKind::Complete);
         }
-        if (buffer_.size() < unit_bytes())
+        if (filled() < unit_bytes())
         {
             return current(StepKind::NeedBytes);
         }
@@ -97,7 +99,7 @@ private:
         {
             return complete() ? 0 : info_->chunks[next_].bytes;
         }
-        if (buffer_.size() < header_probe_bytes())
+        if (filled() < header_probe_bytes())
         {
             return header_probe_bytes();
         }
@@ -123,8 +125,10 @@ private:
     void consume_unit()
     {
         decoded_ += buffer_.size();
-        buffer_.clear();
+        spent_ = true;
     }
+
+    std::size_t filled() const { return spent_ ? 0 : buffer_.size(); }
 
     Result<Step> decode_header()
     {
@@ -145,6 +149,8 @@ private:
         VSPLIT_TRY(contents);
         Step step = current(StepKind::SkippedChunk);
         step.chunk_bytes = chunk.bytes;
+        step.chunk = &chunk;
+        step.contents = is_optional(chunk.kind) ? *contents : std::span<const std::byte>{};
         updates_.show({});
         auto done = decode_contents(chunk, *contents, step);
         if (done && next_ + 1 == info_->chunks.size() && !attributes_.settled())
@@ -199,6 +205,8 @@ private:
         {
             case proto::ChunkKind::Base:
                 return decode_base(chunk, bytes, step);
+            case proto::ChunkKind::Parts:
+                return decode_parts(chunk, bytes);
             case proto::ChunkKind::Growth:
                 return decode_growth(chunk, bytes, step);
             default:
@@ -269,6 +277,23 @@ private:
         updates_.show_all();
         step.first_new_vertex = 0;
         step.first_moved_vertex = 0;
+        return {};
+    }
+
+    /// Adds components to a complete level; the index lets none come elsewhere.
+    Result<void> decode_parts(const ChunkInfo& chunk, std::span<const std::byte> bytes)
+    {
+        const std::uint32_t faces = state_.mesh.face_count();
+        const auto parts = decode_parts_chunk(
+            *info_,
+            bytes,
+            chunk.vertices - state_.mesh.vertex_count(),
+            chunk.faces - faces,
+            state_.shift
+        );
+        VSPLIT_TRY(parts);
+        VSPLIT_TRY(state_.mesh.add_parts(*parts, state_.max_index()));
+        updates_.show_from(faces);
         return {};
     }
 
@@ -361,6 +386,13 @@ private:
     std::optional<Error> error_;
     std::size_t next_ = 0;
     AttributeChunks attributes_;
+    bool spent_ = false;  ///< buffer_ was decoded; it stays until more bytes come.
+
+public:
+    /// As StreamDecoder::next_chunk().
+    const ChunkInfo* next_chunk() const;
+    /// As StreamDecoder::skip().
+    Step skip();
 };
 
 }  // namespace vsplit::codec

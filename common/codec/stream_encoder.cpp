@@ -3,15 +3,14 @@
 #include "codec/attribute_writer.h"
 #include "codec/base_mesh_encoder.h"
 #include "codec/batch_coder.h"
+#include "codec/chunk_list.h"
 #include "codec/entropy_coder.h"
 #include "codec/grid_positions.h"
 #include "codec/growth_planner.h"
-#include "codec/index_coder.h"
+#include "codec/level_cutter.h"
 #include "codec/split_planner.h"
 #include "codec/stitch_coder.h"
-#include "codec/stream_header_writer.h"
 #include "codec/weight_fit.h"
-#include "core/crc32c.h"
 
 #include <algorithm>
 #include <array>
@@ -23,18 +22,6 @@ namespace {
 
 constexpr std::uint32_t kNoVertex = 0xFFFFFFFF;
 
-/// What header and index of a small stream take.
-constexpr std::size_t kHeaderBytes = 90;
-
-/// A chunk costs about seven bytes of its own; where the prefix is long, shorter ones bring nothing.
-constexpr std::size_t kSmallestChunkBytes = 700;
-
-/// Length to cut for when a level is long: estimates are off by less than what is left to the target.
-constexpr std::size_t kFullChunkBytes = proto::kTargetChunkBytes * 5ULL / 8;
-
-/// Vertices for each chunk that levels may be cut into beyond the first: half a percent of the file.
-constexpr std::uint32_t kVerticesPerCut = 600;
-
 /// Builds the stream chunk by chunk, keeping the mesh as the decoder will have it.
 class StreamBuilder
 {
@@ -43,7 +30,8 @@ public:
         : plan_(plan),
           progress_(progress),
           place_(plan.mesh->positions.size(), kNoVertex),
-          on_grid_(*plan.mesh)
+          on_grid_(*plan.mesh),
+          cutter_(static_cast<std::uint32_t>(plan.mesh->positions.size()))
     {
         for (const auto& position : plan.mesh->positions)
         {
@@ -64,7 +52,7 @@ public:
         std::optional<StreamBuilder> early;
         std::optional<StreamBuilder> late;
         const auto pays = [this](const std::optional<StreamBuilder>& grown) {
-            return grown && growth_pays(grown->payload_.size(), payload_.size());
+            return grown && growth_pays(grown->chunks_.bytes(), chunks_.bytes());
         };
         for (std::size_t level = 1; level < plan_.levels.size() && !pays(late); ++level)
         {
@@ -100,13 +88,14 @@ public:
 
 private:
     void add_chunk(
-        proto::ChunkKind kind, std::span<const std::byte> bytes, const PlannedLevel* ends
+        proto::ChunkKind kind,
+        std::span<const std::byte> bytes,
+        const PlannedLevel* ends,
+        std::uint8_t codec = 0
     )
     {
-        ChunkInfo chunk;
-        chunk.kind = kind;
+        ChunkInfo chunk{.kind = kind, .codec = codec};
         chunk.ends_level = ends != nullptr || kind == proto::ChunkKind::Stitch;
-        chunk.bytes = static_cast<std::uint32_t>(bytes.size()) + proto::kChunkChecksumBytes;
         chunk.vertices = grown_ ? plan_vertices() : state_.mesh.vertex_count();
         chunk.faces = grown_ ? plan_faces() : state_.mesh.face_count();
         chunk.shift = grown_ ? 0 : state_.shift;
@@ -115,11 +104,7 @@ private:
             chunk.rms_error = ends->rms_error;
             chunk.max_error = ends->max_error;
         }
-        chunks_.push_back(chunk);
-        payload_.write_bytes(bytes);
-        payload_.write(crc32c(bytes));
-        content_checksum_ =
-            crc32c(payload_.view().last(proto::kChunkChecksumBytes), content_checksum_);
+        chunks_.add(chunk, bytes);
         if (progress_ && kind != proto::ChunkKind::Growth)
         {
             progress_(
@@ -141,12 +126,7 @@ private:
         const PlannedLevel& level = plan_.levels.front();
         on_grid_.enter(level, true);
         const auto [base, sources] = collect_base(plan_.base_triangles, on_grid_);
-        std::array<std::int32_t, 3> extent = extent_;
-        for (std::int32_t& index : extent)
-        {
-            index >>= level.shift;
-        }
-        const auto encoded = encode_base_mesh(base, extent);
+        const auto encoded = encode_base_mesh(base, extent_at(level.shift));
         VSPLIT_TRY(encoded);
         for (const std::uint32_t vertex : encoded->vertices)
         {
@@ -159,20 +139,56 @@ private:
         state_.bits = plan_.grid.bits;
         state_.shift = level.shift;
         VSPLIT_TRY(state_.mesh.set_base(encoded->decoded, state_.max_index()));
-        add_chunk(proto::ChunkKind::Base, encoded->bytes, &level);
-        chunks_.back().codec = encoded->codec;
+        add_chunk(proto::ChunkKind::Base, encoded->bytes, &level, encoded->codec);
+        return {};
+    }
+
+    std::array<std::int32_t, 3> extent_at(int shift) const
+    {
+        return {extent_[0] >> shift, extent_[1] >> shift, extent_[2] >> shift};
+    }
+
+    /// Adds the components of a level that has no splits, group by group.
+    Result<void> add_parts(const PlannedLevel& level)
+    {
+        if (level.shift != state_.shift)
+        {
+            return fail(ErrorCode::Internal, "components come at another precision");
+        }
+        on_grid_.enter(level, false);
+        for (const std::vector<Triangle>& group : level.parts)
+        {
+            const auto [mesh, sources] = collect_base(group, on_grid_);
+            const EncodedBase encoded =
+                encode_small_base(mesh, extent_at(level.shift), ComponentStart::LastVertex);
+            if (encoded.bytes.empty())
+            {
+                return fail(ErrorCode::Internal, "components do not make a chunk");
+            }
+            for (const std::uint32_t vertex : encoded.vertices)
+            {
+                place_vertex(sources[vertex]);
+            }
+            VSPLIT_TRY(state_.mesh.add_parts(encoded.decoded, state_.max_index()));
+            const bool last = &group == &level.parts.back();
+            add_chunk(proto::ChunkKind::Parts, encoded.bytes, last ? &level : nullptr);
+        }
         return {};
     }
 
     Result<void> add_level(const PlannedLevel& level)
     {
+        if (!level.parts.empty())
+        {
+            return add_parts(level);
+        }
         BitEncoder bits;
         const int shift = state_.shift;
         if (level.shift > shift)
         {
             return fail(ErrorCode::Internal, "a level takes precision back");
         }
-        cost_.expect_drop(shift - level.shift);
+        cutter_.cost().expect_drop(shift - level.shift);
         on_grid_.enter(level, level.shift != shift);
         const auto target = on_grid_.of(source_);
         start_level(bits, state_, level.shift, target);
@@ -213,11 +229,11 @@ private:
         VSPLIT_TRY(plan);
         auto left = static_cast<std::uint32_t>(batch.size());
         const bool whole = level.batches.size() > 1 || !plan_.cut_levels;
-        std::uint32_t chunks = whole ? 1 : chunk_count(left, refinement);
+        std::uint32_t chunks = whole ? 1 : cutter_.chunk_count(left, refinement, chunks_.bytes());
         for (; chunks > 0; --chunks, refinement = 0)
         {
             const std::uint32_t count =
-                chunks > 1 ? cost_.next_share(left, chunks, refinement) : left;
+                chunks > 1 ? cutter_.cost().next_share(left, chunks, refinement) : left;
             VSPLIT_TRY(add_splits(bits, batch, *plan, count));
             left -= count;
             finish_chunk(bits, chunks == 1 ? &level : nullptr, refinement);
@@ -230,9 +246,9 @@ private:
     {
         ByteWriter chunk;
         bits.finish(chunk);
-        const std::uint32_t before = chunks_.back().vertices;
+        const std::uint32_t before = chunks_.last().vertices;
         add_chunk(proto::ChunkKind::Batch, chunk.view(), ends);
-        cost_.observe(chunks_.back().vertices - before, chunks_.back().bytes, refinement);
+        cutter_.cost().observe(chunks_.last().vertices - before, chunks_.last().bytes, refinement);
     }
 
     Result<void> add_splits(
@@ -266,24 +282,6 @@ private:
         return {};
     }
 
-    /// Chunks to cut a level into: each may grow the prefix by a sixth while that is short, by a twelfth
-    /// later, as long as that does not cost too much; cut for the target they are in any case.
-    std::uint32_t chunk_count(std::uint32_t splits, std::uint64_t refinement)
-    {
-        const std::size_t prefix = kHeaderBytes + payload_.size();
-        const std::size_t most = std::clamp<std::size_t>(
-            prefix / 12, std::min(prefix / 6, kSmallestChunkBytes), kFullChunkBytes
-        );
-        const std::uint64_t bytes = (cost_.bits_for(splits) + refinement) / 8;
-        const auto cuts_to = [bytes](std::size_t length) {
-            return static_cast<std::uint32_t>(std::max<std::uint64_t>(bytes / length, 1) - 1);
-        };
-        const std::uint32_t left = plan_vertices() / kVerticesPerCut - cuts_;
-        const auto cuts = std::max(cuts_to(kFullChunkBytes), std::min(cuts_to(most), left));
-        cuts_ += std::min(cuts, left);
-        return cuts + 1;
-    }
-
     std::uint32_t plan_vertices() const
     {
         return static_cast<std::uint32_t>(plan_.mesh->positions.size());
@@ -297,13 +295,18 @@ private:
     GrowthStart start_of_growth(std::size_t level) const
     {
         const bool may = plan_.grow_last_level && plan_.training == nullptr;
-        return may && level + 1 < plan_.levels.size() ? growth_start(
-                                                            payload_.size(),
-                                                            plan_vertices(),
-                                                            plan_.levels[level].shift,
-                                                            !plan_.wedges.empty()
-                                                        )
-                                                      : GrowthStart::Never;
+        const auto later = std::span(plan_.levels).subspan(level + 1);
+        // What grows, grows over what is there.
+        const bool all_there = std::ranges::all_of(
+            later, &std::vector<std::vector<Triangle>>::empty, &PlannedLevel::parts
+        );
+        return may && all_there && !later.empty() ? growth_start(
+                                                        chunks_.bytes(),
+                                                        plan_vertices(),
+                                                        plan_.levels[level].shift,
+                                                        !plan_.wedges.empty()
+                                                    )
+                                                  : GrowthStart::Never;
     }
 
     /// Makes a copy of this stream that goes on with the growth of the complete mesh; nothing when the
@@ -383,14 +386,9 @@ private:
         info.grid = plan_.grid;
         info.vertex_count = plan_vertices();
         info.face_count = plan_faces();
-        info.chunks = std::move(chunks_);
-        info.content_checksum = content_checksum_;
         info.attributes = plan_.attributes;
         info.wedge_count = count_wedges(plan_.wedges);
-        std::vector<std::byte> file = write_stream_header(info, extent_);
-        const auto payload = payload_.view();
-        file.insert(file.end(), payload.begin(), payload.end());
-        return file;
+        return chunks_.assemble(std::move(info), extent_);
     }
 
     const StreamPlan& plan_;
@@ -399,13 +397,10 @@ private:
     std::vector<std::uint32_t> place_;   ///< By vertex of the plan its index in the stream.
     std::vector<std::uint32_t> source_;  ///< By vertex of the stream its index in the plan.
     GridPositions on_grid_;
-    std::vector<ChunkInfo> chunks_;
-    ByteWriter payload_;
-    std::uint32_t content_checksum_ = 0;
+    ChunkList chunks_;
     std::array<std::int32_t, 3> extent_{};  ///< Largest index per axis.
-    SplitCost cost_;
-    std::uint32_t cuts_ = 0;  ///< Of levels into chunks so far.
-    bool grown_ = false;      ///< The complete mesh was grown.
+    LevelCutter cutter_;
+    bool grown_ = false;  ///< The complete mesh was grown.
 };
 
 }  // namespace

@@ -56,6 +56,9 @@ struct PlannedLevel
     std::vector<std::vector<Collapse>> batches;
     /// By batch and collapse what it took away; empty when the mesh has no wedges.
     std::vector<std::vector<SeamRecord>> seams;
+    /// Instead of batches: components that show from this level on, in vertices of the plan's mesh; one
+    /// group a chunk, within the limits of encode_small_base(). The shift is that of the level before.
+    std::vector<std::vector<Triangle>> parts;
     int shift = 0;  ///< Precision of the level; never grows from level to level.
     /// From this level on, as long as the shift stays the same. Only where the shift changes, and of
     /// vertices that the level has.
@@ -68,11 +71,9 @@ struct PlannedLevel
 struct StreamPlan
 {
     QuantizationGrid grid;
-    const GridMesh* mesh = nullptr;         ///< The complete mesh.
-    std::vector<Triangle> base_triangles;   ///< In vertices of `mesh`.
-    std::vector<Triangle> base_wedges;      ///< At the corners of base_triangles; or empty.
-    std::vector<std::uint32_t> base_faces;  ///< By base triangle the one of `mesh`; or empty.
-    std::vector<PlannedLevel> levels;       ///< Base first, finest last (its shift is 0).
+    const GridMesh* mesh = nullptr;        ///< The complete mesh.
+    std::vector<Triangle> base_triangles;  ///< In vertices of `mesh`.
+    std::vector<PlannedLevel> levels;      ///< Base first, finest last (its shift is 0).
     /// For training only: the model to start from instead of initial_model(); what was learned comes
     /// back in it. The stream is then not decodable.
     LearnedModel* training = nullptr;

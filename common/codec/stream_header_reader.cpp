@@ -169,16 +169,37 @@ Result<void> read_extent(BitDecoder& bits, StreamInfo& info)
                : fail(ErrorCode::BadHeader, "the bounding box is not finite");
 }
 
+/// Counts an optional chunk with a level.
+void count_optional(const ChunkInfo& chunk, LevelInfo& level)
+{
+    const bool tells =
+        chunk.kind == proto::ChunkKind::Attributes || chunk.kind == proto::ChunkKind::Texture;
+    if (tells && picture_quality(chunk.tag) > 0.0)
+    {
+        level.picture_quality = picture_quality(chunk.tag);
+    }
+    if (chunk.kind == proto::ChunkKind::Appearance || chunk.kind == proto::ChunkKind::Texture)
+    {
+        level.other_bytes += chunk.bytes;
+        return;
+    }
+    level.chunk_bytes += chunk.bytes;
+    level.attribute_bytes += chunk.kind == proto::ChunkKind::Attributes ? chunk.bytes : 0;
+    level.cumulative_bytes = chunk.offset + chunk.bytes;
+}
+
 Result<void> collect_levels(StreamInfo& info)
 {
     LevelInfo level;
     for (const ChunkInfo& chunk : info.chunks)
     {
-        level.chunk_bytes += chunk.bytes;
         if (is_optional(chunk.kind))
         {
+            // What stands within a level is of no use before it ends, and counts with it.
+            count_optional(chunk, chunk.ends_level ? info.levels.back() : level);
             continue;
         }
+        level.chunk_bytes += chunk.bytes;
         if (chunk.ends_level)
         {
             level.vertices = chunk.vertices;
@@ -194,9 +215,6 @@ Result<void> collect_levels(StreamInfo& info)
     {
         return fail(ErrorCode::BadHeader, "the index lists too many levels");
     }
-    // Optional chunks behind the last level belong to it.
-    info.levels.back().chunk_bytes += level.chunk_bytes;
-    info.levels.back().cumulative_bytes = info.file_bytes;
     return {};
 }
 

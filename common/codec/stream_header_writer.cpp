@@ -61,9 +61,7 @@ public:
                 return;
             }
             row.vertices = chunk.vertices - vertices_;
-            row.boundary = 2 * row.vertices - (chunk.faces - faces_);
-            count_level(i, row);
-            static_cast<void>(index_.code_batch(row));
+            write_refinement(i, row);
         }
         vertices_ = chunk.vertices;
         faces_ = chunk.faces;
@@ -76,6 +74,22 @@ public:
     }
 
 private:
+    /// Writes the rest of the row of a Batch or Parts chunk.
+    void write_refinement(std::size_t i, IndexRow& row)
+    {
+        const ChunkInfo& chunk = info_.chunks[i];
+        if (chunk.kind == proto::ChunkKind::Parts)
+        {
+            row.faces = chunk.faces - faces_;
+            row.ends_parts = chunk.ends_level;
+            static_cast<void>(index_.code_parts(row));
+            return;
+        }
+        row.boundary = 2 * row.vertices - (chunk.faces - faces_);
+        count_level(i, row);
+        static_cast<void>(index_.code_batch(row));
+    }
+
     std::uint32_t code_of(double error) const
     {
         return error_to_code(diagonal_ > 0.0 ? error / diagonal_ : 0.0);
@@ -272,7 +286,9 @@ Result<std::vector<std::byte>> replace_errors(
 }
 
 Result<std::vector<std::byte>> insert_chunks(
-    std::span<const std::byte> file, std::span<const ExtraChunk> extra
+    std::span<const std::byte> file,
+    std::span<const ExtraChunk> extra,
+    std::span<const std::uint32_t> tags
 )
 {
     auto info = parse_stream_info(file);
@@ -287,7 +303,8 @@ Result<std::vector<std::byte>> insert_chunks(
     };
     for (std::size_t i = 0; i < info->chunks.size(); ++i)
     {
-        const ChunkInfo& chunk = info->chunks[i];
+        ChunkInfo& chunk = info->chunks[i];
+        chunk.tag = tags.empty() ? chunk.tag : tags[i];
         append(chunk, file.subspan(chunk.offset, chunk.bytes));
         for (; !extra.empty() && extra.front().after <= i; extra = extra.subspan(1))
         {

@@ -42,10 +42,13 @@ struct LevelErrors
     std::span<const std::byte> file, std::span<const LevelErrors> errors
 );
 
-/// Puts optional chunks into a finished stream. `extra`: in the order of `after`.
+/// Puts optional chunks into a finished stream. `extra`: in the order of `after`; `tags`: by chunk of the stream
+/// its new tag, or empty: as they are.
 /// Errors: those of parse_stream_info(); Internal when a chunk would follow none of the stream.
 [[nodiscard]] Result<std::vector<std::byte>> insert_chunks(
-    std::span<const std::byte> file, std::span<const ExtraChunk> extra
+    std::span<const std::byte> file,
+    std::span<const ExtraChunk> extra,
+    std::span<const std::uint32_t> tags = {}
 );
 
 }  // namespace vsplit::codec

@@ -20,6 +20,14 @@ double StreamInfo::diagonal() const
     return std::sqrt(sum);
 }
 
+std::uint32_t with_picture_quality(std::uint32_t tag, double squared_error)
+{
+    constexpr double kMost = 63.75;
+    const double ratio = squared_error > 0.0 ? 10.0 * std::log10(65025.0 / squared_error) : kMost;
+    const auto steps = static_cast<std::uint32_t>(std::clamp(ratio, 0.25, kMost) * 4.0);
+    return (tag & ~(255U << 4U)) | steps << 4U;
+}
+
 Result<std::span<const std::byte>> chunk_contents(
     std::span<const std::byte> bytes, std::uint64_t offset
 )
@@ -99,6 +107,11 @@ LargestChunk largest_chunk(const StreamInfo& info)
             vertices = info.vertex_count;  // splits nothing, and nothing splits after it
             continue;
         }
+        if (chunk.kind == proto::ChunkKind::Parts)
+        {
+            vertices = chunk.vertices;  // splits nothing
+            continue;
+        }
         largest.splits =
             std::max(largest.splits, chunk.vertices - std::min(vertices, chunk.vertices));
         vertices = chunk.vertices;
@@ -163,6 +176,22 @@ std::uint64_t attribute_heap_bytes(const StreamInfo& info)
     return kFixed + numbers * kModel + lasting + std::max(finding, valuing);
 }
 
+/// Heap for decoding the largest Parts chunk beside the mesh, and for linking it.
+std::uint64_t parts_heap_bytes(const StreamInfo& info)
+{
+    std::uint64_t most = 0;
+    for (std::size_t i = 1; i < info.chunks.size(); ++i)
+    {
+        if (info.chunks[i].kind == proto::ChunkKind::Parts)
+        {
+            const std::uint64_t vertices = info.chunks[i].vertices - info.chunks[i - 1].vertices;
+            const std::uint64_t faces = info.chunks[i].faces - info.chunks[i - 1].faces;
+            most = std::max(most, 512 * std::max(vertices, faces / 2));
+        }
+    }
+    return most;
+}
+
 }  // namespace
 
 std::uint64_t decoder_heap_bytes(const StreamInfo& info)
@@ -194,7 +223,7 @@ std::uint64_t decoder_heap_bytes(const StreamInfo& info)
     const std::uint64_t mesh =
         20ULL * base.vertices + 60ULL * base.faces + 14ULL * refined.vertices +
         12ULL * (stitched ? info.vertex_count : 0) + 32ULL * refined.faces + 8ULL * largest.splits +
-        (grows ? growth_heap_bytes(info, refined) : 0);
+        parts_heap_bytes(info) + (grows ? growth_heap_bytes(info, refined) : 0);
     // The learned model and small things.
     constexpr std::uint64_t kFixed = 128U * 1024U;
     return kFixed + std::max(draco, mesh) + largest.bytes +

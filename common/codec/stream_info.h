@@ -48,9 +48,20 @@ struct ChunkInfo
     double rms_error = 0.0;      ///< RMS surface distance to the source after it, model units.
     double max_error = 0.0;      ///< Largest sampled surface distance after it, model units.
     /// Of optional kinds: tells a reader what the chunk is about before it is fetched, by kind; see
-    /// texture_tag(). 0 for others.
+    /// image::texture_tag() and picture_quality(). 0 for others.
     std::uint32_t tag = 0;
 };
+
+/// How near pictures of the model are to those of the original when a chunk and all before it have come:
+/// peak signal-to-noise ratio, decibels, in steps of a quarter; 0 where that was not measured.
+/// `tag`: of a chunk of attributes or of an image.
+[[nodiscard]] constexpr double picture_quality(std::uint32_t tag)
+{
+    return 0.25 * static_cast<double>((tag >> 4U) & 255U);
+}
+
+/// Puts the quality of pictures into a tag. `squared_error`: mean over the pictures, 0 .. 65025.
+[[nodiscard]] std::uint32_t with_picture_quality(std::uint32_t tag, double squared_error);
 
 /// The mesh after a number of batches: level 0 is the base mesh.
 struct LevelInfo
@@ -58,10 +69,16 @@ struct LevelInfo
     std::uint32_t level = 0;
     std::uint32_t vertices = 0;
     std::uint32_t faces = 0;
-    std::uint64_t chunk_bytes = 0;       ///< Bytes of its chunks; level 0 without the header.
-    std::uint64_t cumulative_bytes = 0;  ///< Length of the file prefix that shows this level.
-    double rms_error = 0.0;              ///< Model units.
-    double max_error = 0.0;              ///< Model units.
+    /// Bytes of its chunks, attributes included; level 0 without the header.
+    std::uint64_t chunk_bytes = 0;
+    std::uint64_t attribute_bytes = 0;  ///< Of these, chunks of attributes.
+    std::uint64_t other_bytes =
+        0;  ///< Chunks of materials and images between it and the next level.
+    /// Length of the file prefix that shows this level with its attributes.
+    std::uint64_t cumulative_bytes = 0;
+    double rms_error = 0.0;        ///< Model units.
+    double max_error = 0.0;        ///< Model units.
+    double picture_quality = 0.0;  ///< Of the last chunk that tells it; see picture_quality().
 };
 
 /// Everything the header and the index say, known before any mesh data arrives.

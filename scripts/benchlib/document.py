@@ -1,6 +1,6 @@
 """report.md: the text around the tables."""
 
-from . import report, speed_report
+from . import attributes, pictures, report, speed_report
 
 QUOTED = """## Quoted figures
 
@@ -15,6 +15,14 @@ named programs earlier, on the same models.
 
 Their rms in percent at 0.5 / 1 / 2 / 4 bpv, MEPP2 valence with adaptive quantisation: stanford-bunny
 .415 / .209 / .117 / .060, rocker-arm 2.2 / .68 / .30 / .156."""
+
+
+SURFACE_PARTS = {"attributes": attributes, "pictures": pictures}
+
+
+def surface_sections(results):
+    return [line for part, module in SURFACE_PARTS.items() if part in results
+            for line in module.section(results[part])]
 
 
 def head(results):
@@ -32,6 +40,8 @@ def head(results):
 
 def rate_section(results):
     models = results["models"]
+    if not models:
+        return []
     differences = [100 * abs(model["draco_encoder_bytes"] / model["draco_bytes"] - 1)
                    for model in models]
     sections = [
@@ -67,10 +77,14 @@ def picture(results, name, text):
 def write(folder, results):
     """Writes report.md and the CSV files into a folder."""
     lines = [*head(results), "", "## Goals", "", report.goal_table(results["goals"]),
-             *rate_section(results), *speed_report.sections(results), "", QUOTED]
+             *rate_section(results), *surface_sections(results), *speed_report.sections(results), "",
+             QUOTED]
     (folder / "report.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
     report.write_rate_csv(folder, results["models"])
     speed_report.write_csv(folder, results)
+    for part, module in SURFACE_PARTS.items():
+        if part in results:
+            module.write_csv(folder, results[part])
 
 
 def update(path, models):

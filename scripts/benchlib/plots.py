@@ -109,6 +109,8 @@ def bars(folder, name, values, label, marks):
 def draw(folder, results):
     """All plots for which there are measurements. Result: their names without extension."""
     models = results["models"]
+    if not models:
+        return []
     with_curves = any(row["rate"] is None for model in models for row in model["prefixes"])
     names = rate_distortion(folder, models) if with_curves else []
     names.append(bars(folder, "total-bytes",

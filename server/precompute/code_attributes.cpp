@@ -14,21 +14,6 @@
 namespace vsplit::precompute {
 namespace {
 
-std::uint8_t bits_for(AttributeKind kind, const AttributeBits& bits)
-{
-    switch (kind)
-    {
-        case AttributeKind::TexCoord:
-            return bits.tex_coord;
-        case AttributeKind::Normal:
-            return bits.normal;
-        case AttributeKind::Color:
-            return bits.color;
-        default:
-            return bits.scalar;
-    }
-}
-
 /// Fits origin and cell to the values: one cell for all components, which share their unit.
 void fit_grid(const SurfaceAttribute& attribute, codec::AttributeInfo& info)
 {
@@ -206,13 +191,29 @@ std::vector<std::int32_t> by_wedge(const CodedAttribute& coded, const Wedges& we
 
 }  // namespace
 
+std::uint8_t& bits_of(AttributeBits& bits, AttributeKind kind)
+{
+    switch (kind)
+    {
+        case AttributeKind::TexCoord:
+            return bits.tex_coord;
+        case AttributeKind::Normal:
+            return bits.normal;
+        case AttributeKind::Color:
+            return bits.color;
+        default:
+            return bits.scalar;
+    }
+}
+
 Result<CodedAttribute> code_attribute(const SurfaceAttribute& attribute, const AttributeBits& bits)
 {
     CodedAttribute coded;
     coded.info.kind = attribute.kind;
     coded.info.set = attribute.set;
     coded.info.components = attribute.components;
-    coded.info.bits = bits_for(attribute.kind, bits);
+    AttributeBits all = bits;
+    coded.info.bits = bits_of(all, attribute.kind);
     coded.info.name = attribute.name;
     if (!codec::is_valid(coded.info))
     {

@@ -20,6 +20,9 @@ struct AttributeBits
     std::uint8_t scalar = 12;
 };
 
+/// The bits of a kind of attribute.
+[[nodiscard]] std::uint8_t& bits_of(AttributeBits& bits, AttributeKind kind);
+
 /// An attribute whose values are coded numbers.
 struct CodedAttribute
 {

@@ -238,6 +238,7 @@ double CollapseCost::quadric_price(
         }
         // area / 3 * distance^2, with the area normal twice the area long.
         price += present / 6.0;
+        price += attributes_ != nullptr ? attributes_->price(ring, star.offset, kept) : 0.0;
         // Times the root of the mean distance, so that what is far off counts more than its area.
         price *= star.area > 0.0 ? std::sqrt(std::sqrt(price / star.area)) : 1.0;
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mesh/indexed_mesh.h"
+#include "precompute/attribute_cost.h"
 #include "precompute/collapse_mesh.h"
 #include "precompute/half_edge_mesh.h"
 #include "precompute/metric.h"
@@ -58,6 +59,13 @@ public:
         std::span<const float> importance = {}
     );
 
+    /// From now on metrics that use quadrics also count what lies on the surface. `attributes` must
+    /// outlive this.
+    void count_attributes(const AttributeCost& attributes)
+    {
+        attributes_ = attributes.empty() ? nullptr : &attributes;
+    }
+
     /// Collects the star of a vertex.
     [[nodiscard]] StarGeometry star(std::uint32_t vertex, const OneRing& ring) const;
 
@@ -94,6 +102,7 @@ private:
     std::span<const Vector3> positions_;
     std::vector<Quadric> quadrics_;
     std::vector<float> weights_;
+    const AttributeCost* attributes_ = nullptr;  ///< None: only the shape has a price.
     std::vector<float> keep_;  ///< Factor of every vertex; empty when none is marked.
 };
 

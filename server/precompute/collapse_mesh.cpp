@@ -210,6 +210,24 @@ void CollapseMesh::collapse(std::uint32_t removed, const OneRing& ring, std::siz
     links_[removed].corner = -1;
 }
 
+void CollapseMesh::remove_parts(std::span<const Triangle> parts)
+{
+    for (const Triangle& triangle : parts)
+    {
+        for (const std::uint32_t v : triangle)
+        {
+            links_[v].corner = -1;
+        }
+    }
+    for (Face& face : faces_)
+    {
+        if (face.vertex[0] >= 0 && links_[static_cast<std::size_t>(face.vertex[0])].corner < 0)
+        {
+            face = {};
+        }
+    }
+}
+
 std::vector<Triangle> CollapseMesh::triangles() const
 {
     std::vector<Triangle> result;

@@ -109,8 +109,16 @@ public:
         return wedges_[static_cast<std::size_t>(c >> 2)][static_cast<std::size_t>(c & 3)];
     }
 
+    /// Wedge in which a wedge of the ring's centre goes on when that folds into neighbour number `kept`.
+    /// Preconditions: has_wedges(), keeps_seams().
+    [[nodiscard]] std::uint32_t next_wedge(
+        const OneRing& ring, std::size_t kept, std::uint32_t wedge
+    ) const;
+
     /// Tells what a collapse will take away. Preconditions: has_wedges(), can_collapse().
     [[nodiscard]] codec::SeamRecord seam_record(const OneRing& ring, std::size_t kept) const;
+    /// Takes out whole components. `parts`: all of their triangles that are left.
+    void remove_parts(std::span<const Triangle> parts);
 
     /// True for vertices on the boundary.
     [[nodiscard]] bool is_boundary(std::uint32_t vertex) const
@@ -118,7 +126,7 @@ public:
         return links_[vertex].boundary != 0;
     }
 
-    /// True for vertices that a collapse folded away.
+    /// True for vertices that a collapse folded away or that left with their component.
     [[nodiscard]] bool is_removed(std::uint32_t vertex) const { return links_[vertex].corner < 0; }
 
     /// Neighbours of a vertex.
@@ -177,7 +185,7 @@ public:
         return across < 0 ? -1 : next(across);
     }
 
-    /// True for faces that no collapse has dropped.
+    /// True for faces that no collapse has dropped and whose component is there.
     [[nodiscard]] bool has_face(std::uint32_t face) const { return faces_[face].vertex[0] >= 0; }
 
     /// Vertices of a face. Precondition: has_face().

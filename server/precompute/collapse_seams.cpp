@@ -92,26 +92,36 @@ bool CollapseMesh::keeps_seams(std::uint32_t removed, const OneRing& ring, std::
            !(is_seam(previous(sides.left)) && is_border(sides.left));
 }
 
+std::uint32_t CollapseMesh::next_wedge(const OneRing& ring, std::size_t kept, std::uint32_t wedge)
+    const
+{
+    const Sides sides(ring, kept);
+    if (sides.right >= 0 && this->wedge(sides.right) == wedge)
+    {
+        return this->wedge(next(sides.right));
+    }
+    return this->wedge(sides.left >= 0 ? previous(sides.left) : next(sides.right));
+}
+
 void CollapseMesh::fold_wedges(const OneRing& ring, std::size_t kept)
 {
     if (wedges_.empty())
     {
         return;
     }
+    // The faces at the collapsed edge vanish, and are asked where the others go on.
     const Sides sides(ring, kept);
-    const std::int32_t first = sides.right >= 0 ? sides.right : sides.left;
-    const std::uint32_t old_first = wedge(first);
-    const std::uint32_t new_first = wedge(sides.right >= 0 ? next(first) : previous(first));
-    // The other wedge, if there are two.
-    const std::uint32_t new_other = sides.left >= 0 ? wedge(previous(sides.left)) : new_first;
+    const std::uint32_t removed = vertex(ring.corner[0]);
     for (std::size_t i = 0; i < ring.face_count; ++i)
     {
         const std::int32_t c = ring.corner[i];
-        std::uint32_t& at =
-            wedges_[static_cast<std::size_t>(c >> 2)][static_cast<std::size_t>(c & 3)];
-        at = at == old_first ? new_first : new_other;
+        if (c != sides.right && c != sides.left)
+        {
+            const auto face = static_cast<std::size_t>(c >> 2);
+            wedges_[face][static_cast<std::size_t>(c & 3)] = next_wedge(ring, kept, wedge(c));
+        }
     }
-    on_seam_[ring.vertex[kept]] |= on_seam_[vertex(first)];
+    on_seam_[ring.vertex[kept]] |= on_seam_[removed];
 }
 
 codec::SeamRecord CollapseMesh::seam_record(const OneRing& ring, std::size_t kept) const

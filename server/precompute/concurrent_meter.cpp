@@ -16,17 +16,17 @@ ConcurrentMeter::ConcurrentMeter(
     }
 }
 
-void ConcurrentMeter::take(const std::vector<codec::Collapse>& batch, bool is_level)
+void ConcurrentMeter::take(const LevelStep& step, bool is_level)
 {
     takes_ = takes_ && is_level && queue_ != nullptr;
     if (takes_)
     {
         ++taken_;
-        queue_->run([this, level = LevelBatches{batch}] { meter_->add(level); });
+        queue_->run([this, level = step] { meter_->add(level); });
     }
 }
 
-std::vector<LevelView> ConcurrentMeter::choose(std::span<const LevelBatches> levels)
+std::vector<LevelView> ConcurrentMeter::choose(std::span<const LevelStep> levels)
 {
     if (queue_ == nullptr)
     {
@@ -44,7 +44,7 @@ std::vector<LevelView> ConcurrentMeter::choose(std::span<const LevelBatches> lev
 }
 
 void ConcurrentMeter::start_measuring(
-    std::span<const LevelBatches> levels, std::span<const LevelView> views
+    std::span<const LevelStep> levels, std::span<const LevelView> views
 )
 {
     const auto measure = [this, levels, views] {

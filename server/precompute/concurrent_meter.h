@@ -24,13 +24,13 @@ public:
 
     /// Takes the next batch, finest first, if it is a level of its own; after one that is not, batches
     /// are left to choose().
-    void take(const std::vector<codec::Collapse>& batch, bool is_level);
+    void take(const LevelStep& step, bool is_level);
 
     /// Tells how levels are shown. `levels`: all of them, coarsest first.
-    [[nodiscard]] std::vector<LevelView> choose(std::span<const LevelBatches> levels);
+    [[nodiscard]] std::vector<LevelView> choose(std::span<const LevelStep> levels);
 
     /// Starts to measure; `levels` and `views` must stay as they are until result() returns.
-    void start_measuring(std::span<const LevelBatches> levels, std::span<const LevelView> views);
+    void start_measuring(std::span<const LevelStep> levels, std::span<const LevelView> views);
 
     /// Returns what LevelMeter::measure() found.
     [[nodiscard]] std::vector<SurfaceDistance> result();

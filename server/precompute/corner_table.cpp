@@ -79,7 +79,7 @@ SurfaceAttribute CornerTable::finish(
             filler = filler.value_or(static_cast<std::uint32_t>(value_count()));
             if (*filler == value_count())
             {
-                add_value(missing);
+                add_value(missing.first(attribute_.components));
             }
             value = *filler;
         }

@@ -40,7 +40,7 @@ public:
     [[nodiscard]] bool used() const { return used_; }
 
     /// Takes the attribute, for a mesh of `triangles`. Corners without a value, or with one that never
-    /// came, get `missing` (as many numbers as components). Result: how many corners had one that never
+    /// came, get `missing` (at least as many numbers as components). Result: how many corners had one that never
     /// came, in `bad_corners`.
     [[nodiscard]] SurfaceAttribute finish(
         std::size_t triangles, std::span<const float> missing, std::size_t& bad_corners

@@ -3,13 +3,10 @@
 #include "codec/stream_encoder.h"
 #include "codec/stream_header_writer.h"
 #include "precompute/collapse_cost.h"
-#include "precompute/collapse_mesh.h"
+#include "precompute/collapse_sequence.h"
 #include "precompute/concurrent_meter.h"
 #include "precompute/cut_copies.h"
 #include "precompute/half_edge_mesh.h"
-#include "precompute/level_builder.h"
-#include "precompute/level_errors.h"
-#include "precompute/level_schedule.h"
 #include "precompute/mesh_order.h"
 #include "precompute/validate.h"
 
@@ -32,118 +29,6 @@ double lap(Clock::time_point& start)
     return seconds;
 }
 
-/// Levels that make less progress than this end the sequence, unless there are but a few vertices.
-constexpr double kLeastShare = 0.02;
-constexpr std::size_t kFewVertices = 400;
-
-/// Splits that a level has at most when it joins several batches.
-constexpr std::size_t kSmallestLevel = 30;
-
-/// What is encoded, in an order in which neighbours are near in memory.
-struct Source
-{
-    QuantizationGrid grid;
-    GridMesh quantised;
-    std::vector<Vector3> exact;  ///< Positions in grid units, not rounded.
-    std::vector<std::uint32_t> stitches;
-    std::vector<std::uint8_t> locked;  ///< Vertices that are never removed; or empty.
-    std::vector<float> importance;
-    std::vector<float> weights;         ///< What the metric needs.
-    std::vector<Triangle> wedges;       ///< By triangle those at its corners; or empty.
-    std::vector<std::uint32_t> groups;  ///< By triangle; or empty.
-    std::vector<codec::AttributeInfo> attributes;
-    std::vector<std::vector<std::int32_t>> values;  ///< By attribute and wedge.
-};
-
-/// The collapse sequence.
-struct Sequence
-{
-    std::vector<LevelBatches> levels;
-    std::vector<std::uint8_t> starts;  ///< By batch 1 when it may not join the level before it.
-    std::vector<std::vector<codec::SeamRecord>> seams;  ///< By batch, if there are wedges.
-    std::vector<Triangle> base;                         ///< The triangles that it leaves.
-    std::vector<Triangle> base_wedges;
-    std::vector<std::uint32_t> base_faces;
-};
-
-/// Called with every batch as soon as it is known.
-using BatchSink = std::function<void(const std::vector<codec::Collapse>&)>;
-
-Sequence make_sequence(
-    Source& source,
-    const EncodeOptions& options,
-    const ProgressSink& progress,
-    const BatchSink& take_batch
-)
-{
-    const auto vertex_count = static_cast<std::uint32_t>(source.exact.size());
-    CollapseMesh working(vertex_count, source.quantised.triangles, source.wedges);
-    CollapseCost cost(
-        options.metric, source.exact, working, std::move(source.weights), source.importance
-    );
-    LevelBuilder builder(working, cost, source.exact, source.locked, options.threads);
-    const std::size_t base = next_stop(options, 0, vertex_count);
-    Sequence sequence;
-    bool choosy = true;
-    while (builder.vertex_count() > base)
-    {
-        const std::size_t before = builder.vertex_count();
-        const std::size_t stop = next_stop(options, before, vertex_count);
-        LevelStyle style = style_for(options.metric, before, vertex_count);
-        style.cheapest_share = choosy ? style.cheapest_share : 1.0;
-        auto level = builder.next_level(style, before - stop);
-        const bool arrived = before - level.size() == stop;
-        const double least =
-            before > kFewVertices ? kLeastShare * static_cast<double>(before) : 1.0;
-        const bool slow = !arrived && static_cast<double>(level.size()) < least;
-        if (!level.empty())
-        {
-            take_batch(level);
-            sequence.levels.push_back({std::move(level)});
-            sequence.starts.push_back(arrived ? 1 : 0);
-            sequence.seams.push_back(builder.take_seams());
-        }
-        if (progress)
-        {
-            progress("collapse", 1.0 - static_cast<double>(builder.vertex_count()) / vertex_count);
-        }
-        if (slow && !choosy)
-        {
-            break;
-        }
-        // Where topology holds the cheap ones back, others must do.
-        choosy = choosy && !slow;
-    }
-    sequence.base = working.triangles();
-    if (working.has_wedges())
-    {
-        sequence.base_wedges = working.wedges();
-        sequence.base_faces = working.faces();
-    }
-    return sequence;
-}
-
-/// Turns a sequence round, coarsest first, and joins small batches into one level until it is worth
-/// its own chunk.
-void order_levels(Sequence& sequence)
-{
-    std::vector<LevelBatches> joined;
-    std::size_t splits = kSmallestLevel;
-    for (std::size_t i = sequence.levels.size(); i-- > 0;)
-    {
-        auto& batch = sequence.levels[i].front();
-        if (splits + batch.size() > kSmallestLevel || sequence.starts[i] != 0 ||
-            joined.back().size() == codec::kMaxBatches)
-        {
-            splits = 0;
-            joined.emplace_back();
-        }
-        splits += batch.size();
-        joined.back().push_back(std::move(batch));
-    }
-    sequence.levels = std::move(joined);
-}
-
 codec::StreamPlan make_plan(
     Sequence& sequence, const Source& source, std::span<const LevelView> views
 )
@@ -157,15 +42,14 @@ codec::StreamPlan make_plan(
     plan.groups = source.groups;
     plan.attributes = source.attributes;
     plan.values = source.values;
-    plan.base_wedges = std::move(sequence.base_wedges);
-    plan.base_faces = std::move(sequence.base_faces);
     std::size_t batch = sequence.seams.size();
     for (std::size_t level = 0; level < views.size(); ++level)
     {
         codec::PlannedLevel planned;
         if (level > 0)
         {
-            planned.batches = sequence.levels[level - 1];  // the meter still reads them
+            planned.batches = sequence.levels[level - 1].batches;  // the meter still reads them
+            planned.parts = sequence.levels[level - 1].parts;
             for (std::size_t i = 0; i < planned.batches.size() && !source.wedges.empty(); ++i)
             {
                 planned.seams.push_back(std::move(sequence.seams[--batch]));
@@ -233,7 +117,7 @@ Result<Source> prepare(
     {
         vertex = place[vertex];
     }
-    source.locked = lock_copies(source.stitches);
+    source.locked = mark_copies(source.stitches);
     source.grid = make_grid(ordered.positions, options.position_bits);
     source.quantised = quantize(source.grid, ordered);
     source.exact.resize(ordered.positions.size());
@@ -287,22 +171,29 @@ Result<EncodedMesh> encode_source(
     EncodedMesh result;
     result.seconds.metric = lap(start);
 
+    PartSchedule parts(
+        source.exact, source.quantised.triangles, source.stitches, source.importance
+    );
+    if (!options.level_vertices.empty())
+    {
+        parts.keep_all();  // or levels would not have the vertices that are asked for
+    }
     ConcurrentMeter meter(
         {.exact = source.exact,
          .mesh = &source.quantised,
          .locked = source.locked,
-         .bits = options.position_bits},
+         .bits = options.position_bits,
+         .components = parts.components()},
         source.importance,
         options.threads
     );
-    Sequence sequence = make_sequence(source, options, progress, [&](const auto& batch) {
-        meter.take(
-            batch, batch.size() > kSmallestLevel
-        );  // others may be joined, see order_levels()
-    });
+    Sequence sequence =
+        make_sequence(source, options, progress, parts, [&](const LevelStep& step, bool is_level) {
+            meter.take(step, is_level);
+        });
     result.seconds.collapse = lap(start);
 
-    order_levels(sequence);
+    order_levels(sequence, source);
     const auto measured = stage_progress(progress, "measure");
     measured(0.0);
     const auto views = meter.choose(sequence.levels);

@@ -24,6 +24,10 @@ struct EncodeOptions
     std::vector<std::uint32_t> level_vertices{};
     /// Per vertex 0 .. 1, 1 for what is to be kept for long, or empty; see CollapseCost.
     std::vector<float> importance{};
+    /// Of errors of textures and colours beside those of the shape, when collapses are priced. Measured: 0.5
+    /// takes 21 to 27 % off how far spot's texture slides at 1/8 and 1/4 of the vertices, 7 to 16 % off
+    /// african-head's, and adds 5 to 7 and 6 to 22 % to the errors of their shapes; files shrink by 1 %.
+    double attribute_weight = 0.5;
     /// For training only, see codec::StreamPlan::training.
     codec::LearnedModel* training = nullptr;
     /// False: only splits, no last level that is grown where that is smaller.

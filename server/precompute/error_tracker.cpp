@@ -35,6 +35,9 @@ constexpr std::size_t kSampledFaces = 16 * kCoarseSamples;
 /// Below this number of faces all of them are looked at: other sheets are as near as the next face.
 constexpr std::size_t kSearchedFaces = 256;
 
+/// The same when components are missing: what is nearest then need not be near.
+constexpr std::size_t kSearchedFacesOfParts = 8192;
+
 /// Vertices that are measured when they are removed, the costliest of every batch, and how many of them
 /// are followed further on: the largest distance mostly is that of a vertex.
 constexpr std::size_t kMeasuredVertices = kCostliest;
@@ -119,6 +122,7 @@ void ErrorTracker::restart()
 {
     mesh_ = CollapseMesh(static_cast<std::uint32_t>(exact_.size()), source_.triangles);
     vertices_.clear();
+    lacks_parts_ = false;
     shown_shift_ = -1;
     place_all_samples();
 }
@@ -170,6 +174,45 @@ void ErrorTracker::collapse(std::span<const codec::Collapse> batch)
     {
         const std::uint32_t v = collapse.removed;
         vertices_.push_back({.point = to_float(exact_[v]), .triangle = {v, v, v}, .corner = v});
+    }
+}
+
+void ErrorTracker::remove_parts(std::span<const std::vector<Triangle>> parts)
+{
+    for (const std::vector<Triangle>& group : parts)
+    {
+        mesh_.remove_parts(group);
+        for (const Triangle& triangle :
+             std::span(group).first(std::min(group.size(), kMeasuredVertices)))
+        {
+            const std::uint32_t v = triangle[0];
+            vertices_.push_back({.point = to_float(exact_[v]), .triangle = {v, v, v}, .corner = v});
+        }
+    }
+    lacks_parts_ = true;
+    std::erase_if(faces_, [this](std::uint32_t face) { return !mesh_.has_face(face); });
+    const ClosestPointTree tree(to_float(exact_), triangles());
+    tie_anew(samples_, tree);
+    tie_anew(region_, tree);
+    tie_anew(vertices_, tree);
+}
+
+/// Finds the faces that are closest to samples whose own ones are gone.
+void ErrorTracker::tie_anew(std::span<Sample> samples, const ClosestPointTree& tree) const
+{
+    for (Sample& sample : samples)
+    {
+        if (!is_gone(sample.triangle))
+        {
+            continue;
+        }
+        std::uint32_t hint = 0;
+        sample.square = tree.squared_distance(sample.point, hint);
+        sample.triangle = mesh_.triangle(faces_[hint]);
+        sample.corner = *std::ranges::min_element(sample.triangle, {}, [this](std::uint32_t v) {
+            return mesh_.valence(v);
+        });
+        sample.moved = true;
     }
 }
 
@@ -271,7 +314,7 @@ SurfaceDistance ErrorTracker::measure(int shift, std::span<const std::array<std:
 
 void ErrorTracker::update_shown(int shift)
 {
-    if (faces_.size() <= kSearchedFaces)
+    if (faces_.size() <= (lacks_parts_ ? kSearchedFacesOfParts : kSearchedFaces))
     {
         search_all(shift);
         return;

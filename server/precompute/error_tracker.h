@@ -46,6 +46,10 @@ public:
     /// Carries out collapses that are possible now, the costliest one last.
     void collapse(std::span<const codec::Collapse> batch);
 
+    /// Takes out whole components. What was nearest to them is nearest to something else from now on,
+    /// wherever that is. Precondition: follow() since the last collapse. Cost: a tree of what is left.
+    void remove_parts(std::span<const std::vector<Triangle>> parts);
+
     /// Root mean square distances from the source to the coarse mesh, positions not rounded.
     struct SourceError
     {
@@ -92,6 +96,7 @@ private:
     };
 
     void place_all_samples();
+    void tie_anew(std::span<Sample> samples, const ClosestPointTree& tree) const;
     static Sums sum(std::span<const Sample> samples);
     [[nodiscard]] std::vector<Sample> place_samples(
         std::span<const Triangle> triangles, std::size_t count
@@ -113,6 +118,7 @@ private:
     CollapseMesh mesh_;
     std::vector<std::uint32_t> kept_of_;  ///< By removed vertex the one it was folded into.
     std::vector<std::uint32_t> faces_;    ///< Faces that are left.
+    bool lacks_parts_ = false;            ///< Components were taken out.
     std::vector<Sample> samples_;
     std::vector<Sample> region_;    ///< On the watched region only.
     std::vector<Sample> vertices_;  ///< Removed vertices that are far off, for the maximum only.

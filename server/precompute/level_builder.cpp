@@ -14,17 +14,12 @@
 namespace vsplit::precompute {
 namespace {
 
-constexpr float kSettled = std::numeric_limits<float>::infinity();
-
 /// No face may turn by more than this (cosine).
 constexpr double kLeastCosine = 0.25;
 
 /// Quality below which a new triangle counts as degenerate; 1 is equilateral. Long thin triangles must
 /// pass: flat parts of CAD models consist of them, and refusing them leaves large base meshes.
 constexpr double kLeastQuality = 1e-4;
-
-/// Neighbours that a kept vertex may come to have.
-constexpr std::uint32_t kValenceLimit = 12;
 
 /// Least quality, 0 .. 1, over the triangles that a collapse changes; negative when one flips or
 /// degenerates.
@@ -88,9 +83,9 @@ LevelBuilder::LevelBuilder(
 
 bool LevelBuilder::may_go(std::uint32_t vertex) const
 {
-    constexpr std::uint32_t kMostNeighbours = codec::kMaxWedge + 2;
     const std::uint32_t valence = mesh_.valence(vertex);
-    return valence >= 3 && valence <= kMostNeighbours && (locked_.empty() || locked_[vertex] == 0);
+    return valence >= 3 && valence <= kMostNeighbours &&
+           (locked_.empty() || locked_[vertex] == 0) && copies_.first_of(vertex) == vertex;
 }
 
 std::span<LevelBuilder::Candidate> LevelBuilder::candidates_of(std::uint32_t vertex)
@@ -100,14 +95,13 @@ std::span<LevelBuilder::Candidate> LevelBuilder::candidates_of(std::uint32_t ver
         .subspan(first_[vertex], may_go(vertex) ? mesh_.valence(vertex) : 0);
 }
 
-void LevelBuilder::collect_vertex(std::uint32_t vertex, const LevelStyle& style)
+void LevelBuilder::rate(
+    std::uint32_t vertex,
+    const OneRing& ring,
+    const LevelStyle& style,
+    std::span<Candidate> candidates
+) const
 {
-    const std::span<Candidate> candidates = candidates_of(vertex);
-    OneRing ring;
-    if (candidates.empty() || !mesh_.ring(vertex, ring))
-    {
-        return;
-    }
     const StarGeometry star = cost_.star(vertex, ring);
     const double off_centre = std::sqrt(dot(star.mean, star.mean) / (star.area + 1.0));
     double nearest = std::numeric_limits<double>::infinity();
@@ -135,6 +129,24 @@ void LevelBuilder::collect_vertex(std::uint32_t vertex, const LevelStyle& style)
                            style.apex * portable_log((dot(off, off) + 1.0) / (nearest + 1.0));
         candidates[kept] = {
             static_cast<float>(cost_.price(vertex, ring, star, kept)), static_cast<float>(key)};
+    }
+}
+
+void LevelBuilder::collect_vertex(std::uint32_t vertex, const LevelStyle& style)
+{
+    const std::span<Candidate> candidates = candidates_of(vertex);
+    OneRing ring;
+    if (candidates.empty() || !mesh_.ring(vertex, ring))
+    {
+        return;
+    }
+    if (copies_.of(vertex).empty())
+    {
+        rate(vertex, ring, style, candidates);
+    }
+    else
+    {
+        collect_copies(vertex, style);
     }
 }
 
@@ -219,6 +231,12 @@ void LevelBuilder::rank(const LevelStyle& style)
         }
     }
     std::ranges::make_heap(heap_, std::greater<>());
+    copies_.for_each([this](std::span<const std::uint32_t> copies) {
+        for (const std::uint32_t copy : copies)
+        {
+            best_key_[copy] = best_key_[copies.front()];
+        }
+    });
 }
 
 void LevelBuilder::reward_neighbours(const OneRing& ring, const LevelStyle& style)
@@ -233,7 +251,7 @@ void LevelBuilder::reward_neighbours(const OneRing& ring, const LevelStyle& styl
         {
             continue;
         }
-        const std::uint32_t vertex = mesh_.vertex_across(ring.corner[i]);
+        const std::uint32_t vertex = copies_.first_of(mesh_.vertex_across(ring.corner[i]));
         if (best_key_[vertex] < kSettled)
         {
             best_key_[vertex] -= static_cast<float>(style.packing);
@@ -271,22 +289,33 @@ bool LevelBuilder::try_vertex(
         {
             continue;
         }
-        // Stars share a face exactly when their centres are neighbours.
-        for (std::size_t neighbour = 0; neighbour < ring.size; ++neighbour)
-        {
-            best_key_[ring.vertex[neighbour]] = kSettled;
-        }
-        reward_neighbours(ring, style);
-        done.push_back(describe_collapse(vertex, ring, kept));
-        if (mesh_.has_wedges())
-        {
-            seams_.push_back(mesh_.seam_record(ring, kept));
-        }
-        mesh_.collapse(vertex, ring, kept);
-        cost_.merge(vertex, ring.vertex[kept]);
+        carry_out(vertex, ring, kept, style, done);
         return true;
     }
     return false;
+}
+
+void LevelBuilder::carry_out(
+    std::uint32_t vertex,
+    const OneRing& ring,
+    std::size_t kept,
+    const LevelStyle& style,
+    std::vector<codec::Collapse>& done
+)
+{
+    // Stars share a face exactly when their centres are neighbours.
+    for (std::size_t neighbour = 0; neighbour < ring.size; ++neighbour)
+    {
+        best_key_[ring.vertex[neighbour]] = kSettled;
+    }
+    reward_neighbours(ring, style);
+    done.push_back(describe_collapse(vertex, ring, kept));
+    if (mesh_.has_wedges())
+    {
+        seams_.push_back(mesh_.seam_record(ring, kept));
+    }
+    mesh_.collapse(vertex, ring, kept);
+    cost_.merge(vertex, ring.vertex[kept]);
 }
 
 codec::Collapse describe_collapse(std::uint32_t removed, const OneRing& ring, std::size_t kept)
@@ -328,16 +357,22 @@ void LevelBuilder::put_in_order(std::vector<codec::Collapse>& done)
     std::ranges::sort(first, costliest, {}, &codec::Collapse::removed);
 }
 
+void LevelBuilder::forget_removed()
+{
+    std::erase_if(alive_, [this](std::uint32_t v) { return mesh_.is_removed(v); });
+}
+
 std::vector<codec::Collapse> LevelBuilder::next_level(const LevelStyle& style, std::size_t most)
 {
+    copies_.forget_removed(mesh_);
     collect(style);
     rank(style);
     seams_.clear();
     std::vector<codec::Collapse> done;
     const auto share =
         static_cast<std::size_t>(style.largest_share * static_cast<double>(alive_.size()));
-    const std::size_t limit = std::min(most, std::max<std::size_t>(share, 1));
-    while (!heap_.empty() && done.size() < limit)
+    limit_ = std::min(most, std::max<std::size_t>(share, 1));
+    while (!heap_.empty() && done.size() < limit_)
     {
         std::ranges::pop_heap(heap_, std::greater<>());
         const auto [key, vertex] = heap_.back();
@@ -345,10 +380,11 @@ std::vector<codec::Collapse> LevelBuilder::next_level(const LevelStyle& style, s
         if (key == best_key_[vertex])
         {
             best_key_[vertex] = kSettled;
-            try_vertex(vertex, style, done);
+            copies_.of(vertex).empty() ? try_vertex(vertex, style, done)
+                                       : try_copies(vertex, style, done);
         }
     }
-    std::erase_if(alive_, [this](std::uint32_t v) { return mesh_.is_removed(v); });
+    forget_removed();
     put_in_order(done);
     return done;
 }

@@ -3,6 +3,7 @@
 #include "codec/stream_encoder.h"
 #include "precompute/collapse_cost.h"
 #include "precompute/collapse_mesh.h"
+#include "precompute/cut_copies.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -47,6 +48,10 @@ public:
         unsigned threads = 1
     );
 
+    /// From now on the copies of a cut vertex go together into those of another one, or not at all, so
+    /// that no level opens the cut. `stitches`: as RepairedMesh's, or empty; must outlive the builder.
+    void fold_together(std::span<const std::uint32_t> stitches) { copies_ = CutCopies(stitches); }
+
     /// Chooses and carries out the collapses of the next coarser level. `most`: at most so many.
     /// Result: the collapses, the costliest ones (at most kCostliest) last, cheapest first, the others
     /// before them in the order of their vertices; empty when nothing can go.
@@ -59,10 +64,21 @@ public:
     /// What the collapses of the last next_level() took away, in its order; empty without wedges.
     [[nodiscard]] std::vector<codec::SeamRecord> take_seams() { return std::move(seams_); }
 
+    /// Takes note that components were taken out of the mesh.
+    void forget_removed();
+
     /// Vertices left.
     [[nodiscard]] std::size_t vertex_count() const { return alive_.size(); }
 
 private:
+    static constexpr float kSettled = std::numeric_limits<float>::infinity();
+
+    /// Neighbours that a removed vertex may have.
+    static constexpr std::uint32_t kMostNeighbours = codec::kMaxWedge + 2;
+
+    /// Neighbours that a kept vertex may come to have.
+    static constexpr std::uint32_t kValenceLimit = 12;
+
     /// What folding into one neighbour costs; infinite when that is not geometrically sound.
     struct Candidate
     {
@@ -82,9 +98,26 @@ private:
     [[nodiscard]] Prices typical_prices(const LevelStyle& style);
     void collect(const LevelStyle& style);
     void collect_vertex(std::uint32_t vertex, const LevelStyle& style);
+    void collect_copies(std::uint32_t first, const LevelStyle& style);
+    void rate(
+        std::uint32_t vertex,
+        const OneRing& ring,
+        const LevelStyle& style,
+        std::span<Candidate> candidates
+    ) const;
     void rank(const LevelStyle& style);
     bool try_vertex(
         std::uint32_t vertex, const LevelStyle& style, std::vector<codec::Collapse>& done
+    );
+    bool try_copies(
+        std::uint32_t first, const LevelStyle& style, std::vector<codec::Collapse>& done
+    );
+    void carry_out(
+        std::uint32_t vertex,
+        const OneRing& ring,
+        std::size_t kept,
+        const LevelStyle& style,
+        std::vector<codec::Collapse>& done
     );
     void put_in_order(std::vector<codec::Collapse>& done);
     void reward_neighbours(const OneRing& ring, const LevelStyle& style);
@@ -94,10 +127,12 @@ private:
     std::span<const Vector3> positions_;
     std::span<const std::uint8_t> locked_;
     unsigned threads_;
+    CutCopies copies_;
+    std::size_t limit_ = 0;  ///< Collapses that the level may have.
     std::vector<std::uint32_t> alive_;
     std::vector<Candidate> candidates_;  ///< By vertex that may go, one for each of its neighbours.
     std::vector<std::uint32_t> first_;   ///< By vertex its first candidate.
-    /// By vertex the least key; infinite when it is removed, shares a face with a removed one's star,
+    /// By vertex the least key, copies that of the first of them; infinite when it is removed, shares a face with a removed one's star,
     /// or cannot go.
     std::vector<float> best_key_;
     std::vector<std::pair<float, std::uint32_t>> heap_;

@@ -43,19 +43,33 @@ int shift_for(double rms, int bits)
     return shift;
 }
 
-/// Carries out the collapses that lead to a level.
-void collapse(ErrorTracker& tracker, const LevelBatches& batches)
+/// Carries out what leads to a level.
+void coarsen(ErrorTracker& tracker, const LevelStep& level)
 {
-    for (const auto& batch : batches | std::views::reverse)
+    for (const auto& batch : level.batches | std::views::reverse)
     {
         tracker.collapse(batch);
     }
+    if (!level.parts.empty())
+    {
+        tracker.remove_parts(level.parts);
+    }
 }
 
-std::vector<std::uint32_t> removed_vertices(const LevelBatches& batches)
+std::vector<std::uint32_t> removed_vertices(const LevelStep& level)
 {
     std::vector<std::uint32_t> removed;
-    for (const auto& batch : batches)
+    for (const std::vector<Triangle>& group : level.parts)
+    {
+        for (const Triangle& triangle : group)
+        {
+            removed.insert(removed.end(), triangle.begin(), triangle.end());
+        }
+    }
+    std::ranges::sort(removed);
+    const auto repeated = std::ranges::unique(removed);
+    removed.erase(repeated.begin(), repeated.end());
+    for (const auto& batch : level.batches)
     {
         for (const codec::Collapse& collapse : batch)
         {
@@ -103,11 +117,11 @@ LevelMeter::LevelMeter(
     source_.tree = &tracker_.tree();
 }
 
-void LevelMeter::add(const LevelBatches& level)
+void LevelMeter::add(const LevelStep& level)
 {
     const int shift = shifts_.back();
     place();
-    collapse(tracker_, level);
+    coarsen(tracker_, level);
     const std::vector<std::uint32_t> removed = removed_vertices(level);
     vertices_ -= removed.size();
     if (!placed_.empty())
@@ -115,7 +129,10 @@ void LevelMeter::add(const LevelBatches& level)
         auto& born = placed_.back().born;
         born.insert(born.end(), removed.begin(), removed.end());
     }
-    shifts_.push_back(std::max(shift, shift_for(telling_error(tracker_.follow()), source_.bits)));
+    const double error = telling_error(tracker_.follow());
+    // Components come at the precision of the level before them.
+    const bool may_rise = level.parts.empty();
+    shifts_.push_back(may_rise ? std::max(shift, shift_for(error, source_.bits)) : shift);
 }
 
 void LevelMeter::place()
@@ -158,7 +175,7 @@ std::vector<LevelView> LevelMeter::choose()
 }
 
 std::vector<SurfaceDistance> LevelMeter::measure(
-    std::span<const LevelBatches> levels, std::span<const LevelView> views
+    std::span<const LevelStep> levels, std::span<const LevelView> views
 )
 {
     tracker_.restart();
@@ -167,7 +184,7 @@ std::vector<SurfaceDistance> LevelMeter::measure(
     distances.back() = tracker_.measure(0, cells);
     for (std::size_t i = levels.size(); i-- > 0;)
     {
-        collapse(tracker_, levels[i]);
+        coarsen(tracker_, levels[i]);
         static_cast<void>(tracker_.follow());
         if (views[i].shift != views[i + 1].shift)
         {

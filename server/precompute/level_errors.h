@@ -5,6 +5,7 @@
 #include "mesh/surface_distance.h"
 #include "precompute/error_tracker.h"
 #include "precompute/level_placement.h"
+#include "precompute/part_schedule.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -24,6 +25,13 @@ struct LevelView
 /// The collapses that lead from one level to the next coarser one: batches, coarsest first.
 using LevelBatches = std::vector<std::vector<codec::Collapse>>;
 
+/// What leads from one level to the next coarser one: collapses, or components that leave.
+struct LevelStep
+{
+    LevelBatches batches;
+    RemovedParts parts;  ///< Where there are some, there are no batches.
+};
+
 /// Chooses the precision of every level and where it shows its vertices, and measures what it then
 /// looks like. A level whose surface is e grid units (rms) off does without floor(log2(3 e)) bits: finer
 /// positions would not be seen. Where something is to be kept, its error counts as much as that of the
@@ -37,7 +45,7 @@ public:
     LevelMeter(const PlacementSource& source, std::span<const float> importance, unsigned threads);
 
     /// Goes on to the next coarser level. Cost: about half a microsecond a collapse.
-    void add(const LevelBatches& level);
+    void add(const LevelStep& level);
 
     /// Tells how levels are shown, when the last one was added. Result: one entry for the base and one a
     /// level, coarsest first; shifts never grow towards the finest, which has 0.
@@ -49,7 +57,7 @@ public:
     /// sampled: the rms is that of many more samples to about 5 %. Cost: as add(). Afterwards the meter
     /// is of no more use.
     [[nodiscard]] std::vector<SurfaceDistance> measure(
-        std::span<const LevelBatches> levels, std::span<const LevelView> views
+        std::span<const LevelStep> levels, std::span<const LevelView> views
     );
 
 private:

@@ -115,6 +115,24 @@ std::int32_t halves_outside(const Cell& coarse, const Cell& fine, int steps)
     return sum;
 }
 
+/// The source without the samples of components that a level lacks, which would draw its surface away
+/// from its own. `triangles`: of the level, in vertices of the source.
+FitSource present(
+    const PlacementSource& source, std::span<const Triangle> triangles, const FitSource& all
+)
+{
+    FitSource fit = all;
+    std::vector<std::uint8_t> is_there(source.components.size(), 0);
+    for (const Triangle& triangle : triangles)
+    {
+        is_there[source.components[triangle[0]]] = 1;
+    }
+    std::erase_if(fit.samples, [&](const SurfaceSample& sample) {
+        return is_there[source.components[source.mesh->triangles[sample.triangle][0]]] == 0;
+    });
+    return fit;
+}
+
 /// Levels of one shift while their vertices are placed. A vertex stays where it is until the grid gets finer,
 /// so that it has to suit the coarsest of them and the finest.
 class Placement
@@ -178,6 +196,11 @@ private:
         std::vector<Triangle> triangles, const FitSource& fit_source, unsigned threads
     )
     {
+        std::optional<FitSource> part;
+        if (!source_.components.empty())
+        {
+            part = present(source_, triangles, fit_source);
+        }
         for (Triangle& triangle : triangles)
         {
             for (std::uint32_t& v : triangle)
@@ -194,7 +217,7 @@ private:
         std::ranges::transform(vertices_, places.begin(), [this](std::uint32_t v) {
             return source_.exact[v];
         });
-        return {fit_source, std::move(places), triangles, threads};
+        return {part ? *part : fit_source, std::move(places), triangles, threads};
     }
 
     void move(std::uint32_t v, const Vector3& step)

@@ -20,6 +20,8 @@ struct PlacementSource
     const ClosestPointTree* tree = nullptr;  ///< Of both.
     std::span<const std::uint8_t> locked;    ///< V flags: vertices that stay at home; or empty.
     int bits = 12;                           ///< Position bits.
+    /// By vertex the number of its component, when levels may lack some; or empty.
+    std::span<const std::uint32_t> components;
 };
 
 /// Levels of one shift, to be placed together.

@@ -134,7 +134,9 @@ private:
     void start(std::string_view rest)
     {
         Material material;
-        material.name = std::string(take_token(rest));
+        const std::size_t begin = std::min(rest.find_first_not_of(" \t"), rest.size());
+        const std::size_t end = rest.find_last_not_of(" \t") + 1;
+        material.name = begin < end ? std::string(rest.substr(begin, end - begin)) : "";
         material.metallic = 0.0F;
         materials_.push_back(std::move(material));
     }

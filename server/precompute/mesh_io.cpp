@@ -54,6 +54,10 @@ Result<SourceModel> parse(
     {
         return read_ply_model(bytes, read);
     }
+    if (extension == ".glb" || extension == ".gltf")
+    {
+        return read_gltf_model(bytes, read);
+    }
     if (extension == ".obj")
     {
         return as_text(bytes).and_then([&](std::string_view text) {
@@ -69,7 +73,7 @@ Result<SourceModel> parse(
 
 bool is_readable(const std::string& extension)
 {
-    constexpr std::array kExtensions{".ply", ".stl", ".off", ".obj", ".om"};
+    constexpr std::array kExtensions{".ply", ".stl", ".off", ".obj", ".om", ".glb", ".gltf"};
     return std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
 }
 
@@ -84,7 +88,7 @@ Result<SourceModel> read_model(const std::filesystem::path& path, const ReadComp
         {
             return fail(
                 ErrorCode::UnsupportedInput,
-                start + "the extension is none of .obj, .ply, .off, .stl and .om"
+                start + "the extension is none of .obj, .ply, .glb, .gltf, .off, .stl and .om"
             );
         }
         const auto bytes = read_file(path);
@@ -110,9 +114,10 @@ Result<SourceModel> read_model(const std::filesystem::path& path, const ReadComp
 
 Result<IndexedMesh> read_mesh(const std::filesystem::path& path)
 {
-    return read_model(path, nullptr).map([](SourceModel model) {
-        return std::move(model.surface.mesh);
-    });
+    // A .gltf file has its mesh in another one.
+    const bool split = lower_case(path.extension().string()) == ".gltf";
+    return read_model(path, split ? companions_in(path.parent_path()) : nullptr)
+        .map([](SourceModel model) { return std::move(model.surface.mesh); });
 }
 
 Result<SourceModel> read_surface(const std::filesystem::path& path)

@@ -48,6 +48,18 @@ namespace vsplit::precompute {
 /// Source: Wavefront, "Object Files (.obj)", appendix B1 of the Advanced Visualizer manual.
 [[nodiscard]] Result<SourceModel> read_obj_model(std::string_view text, const ReadCompanion& read);
 
+/// Reads GLB and glTF 2.0: the meshes of the default scene where their nodes put them, compressed by Draco
+/// or not, with normals, texture coordinates, colours, values of names that start with "_", materials and
+/// images. Every mesh and material is a group. Skins, animations, morph targets, cameras, lights and
+/// other extensions are noted.
+/// `bytes`: the whole file; `read`: gives external buffers and images, or empty: no other file is opened.
+/// Result, errors, cost as read_ply_model(), and UnsupportedInput for compressions of other extensions.
+/// Thread safe. Safe on untrusted input as far as tinygltf and Draco are; all counts are ours to check.
+/// Source: Khronos, "glTF 2.0 Specification", 2021.
+[[nodiscard]] Result<SourceModel> read_gltf_model(
+    std::span<const std::byte> bytes, const ReadCompanion& read
+);
+
 /// Reads ascii and binary STL; three vertices of its own for every facet.
 /// Arguments, result, errors, cost as read_ply_model(). Thread safe. Safe on untrusted input.
 /// Source: 3D Systems, "StereoLithography Interface Specification", 1989.

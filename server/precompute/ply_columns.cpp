@@ -183,4 +183,17 @@ PlyVertexPlan plan_ply_vertices(const PlyElement& element, DroppedNotes& dropped
     return Planner(element).plan(dropped);
 }
 
+PlyFaceUse ply_face_use(const PlyProperty& property)
+{
+    if (!property.count_type)
+    {
+        return PlyFaceUse::Skip;
+    }
+    if (property.name == "vertex_indices" || property.name == "vertex_index")
+    {
+        return PlyFaceUse::Corners;
+    }
+    return property.name == "texcoord" ? PlyFaceUse::TexCoords : PlyFaceUse::Skip;
+}
+
 }  // namespace vsplit::precompute

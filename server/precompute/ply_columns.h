@@ -5,6 +5,7 @@
 #include "precompute/source_model.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace vsplit::precompute {
@@ -40,5 +41,16 @@ struct PlyVertexPlan
 /// they are. `dropped`: gets a note for every property that is not used. Cost: linear but for a few
 /// dozen known names. Thread safe. Safe on untrusted input.
 [[nodiscard]] PlyVertexPlan plan_ply_vertices(const PlyElement& element, DroppedNotes& dropped);
+
+/// What a property of a face is for.
+enum class PlyFaceUse : std::uint8_t
+{
+    Skip,
+    Corners,
+    TexCoords,  ///< Of every corner, u and v in turn.
+};
+
+/// Tells it by the name, as writers use it today. Thread safe.
+[[nodiscard]] PlyFaceUse ply_face_use(const PlyProperty& property);
 
 }  // namespace vsplit::precompute

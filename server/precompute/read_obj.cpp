@@ -173,10 +173,10 @@ private:
         const bool tex_coord = &table == &tex_coords_;
         for (std::size_t i = 0; i < (tex_coord ? 2 : 3); ++i)
         {
-            const auto number = parse_real(take_token(rest));
-            value[i] = number ? to_float(*number) : 0.0F;
+            const double number = parse_real(take_token(rest)).value_or(0.0);
+            const bool upwards = tex_coord && i == 1;  // there, and downwards here
+            value[i] = to_float(upwards ? 1.0 - number : number);
         }
-        value[1] = tex_coord ? 1.0F - value[1] : value[1];  // upwards there, downwards here
         table.add_value(std::span(value).first(tex_coord ? 2 : 3));
     }
 

@@ -16,27 +16,6 @@
 namespace vsplit::precompute {
 namespace {
 
-/// What a reader does with a property of a face.
-enum class Use : std::uint8_t
-{
-    Skip,
-    Corners,
-    TexCoords,  ///< Of every corner, u and v in turn.
-};
-
-Use face_use(const PlyProperty& property)
-{
-    if (!property.count_type)
-    {
-        return Use::Skip;
-    }
-    if (property.name == "vertex_indices" || property.name == "vertex_index")
-    {
-        return Use::Corners;
-    }
-    return property.name == "texcoord" ? Use::TexCoords : Use::Skip;
-}
-
 template <typename Values>
 class BodyReader
 {
@@ -167,11 +146,11 @@ private:
             coordinates_.clear();
             for (const PlyProperty& property : element.properties)
             {
-                const Use use = used ? face_use(property) : Use::Skip;
+                const PlyFaceUse use = used ? ply_face_use(property) : PlyFaceUse::Skip;
                 VSPLIT_TRY(
-                    use == Use::Corners     ? read_corners(property)
-                    : use == Use::TexCoords ? read_coordinates(property)
-                                            : skip(property)
+                    use == PlyFaceUse::Corners     ? read_corners(property)
+                    : use == PlyFaceUse::TexCoords ? read_coordinates(property)
+                                                   : skip(property)
                 );
             }
             first_triangle_ = builder_.triangle_count();
@@ -189,7 +168,7 @@ private:
         }
         for (const PlyProperty& property : element.properties)
         {
-            if (used && face_use(property) == Use::Skip)
+            if (used && ply_face_use(property) == PlyFaceUse::Skip)
             {
                 dropped_.add("face property '" + property.name + "'");
             }

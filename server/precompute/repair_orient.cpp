@@ -13,22 +13,6 @@ enum Visit : std::uint8_t
     kReversed = 1,
 };
 
-/// Joins the two half-edges of every edge that has exactly two.
-std::vector<HalfEdge> join_edges(const IndexedMesh& mesh, RepairReport& report)
-{
-    std::vector<HalfEdge> opposite(3 * mesh.triangles.size(), kNoHalfEdge);
-    const EdgeTable edges(mesh.triangles, mesh.positions.size());
-    edges.for_each_edge([&](std::span<const HalfEdge> halves) {
-        if (halves.size() == 2)
-        {
-            opposite[halves[0]] = halves[1];
-            opposite[halves[1]] = halves[0];
-        }
-        report.non_manifold_edges += halves.size() > 2 ? 1 : 0;
-    });
-    return opposite;
-}
-
 class FloodFill
 {
 public:

@@ -17,6 +17,12 @@ namespace vsplit::precompute {
 /// the result, a welded vertex having the largest.
 void weld_and_clean(const IndexedMesh& mesh, RepairedMesh& result);
 
+/// Part of the second step: joins the two half-edges of every edge that has exactly two, and of an edge
+/// with more those whose faces go on smoothly in each other, unless the result would not be a manifold.
+/// `mesh`: result of weld_and_clean(). Result: per half-edge the one it is joined to, or kNoHalfEdge.
+/// Fills non_manifold_edges of `report`: edges with more than two faces. Thread safe.
+[[nodiscard]] std::vector<HalfEdge> join_edges(const IndexedMesh& mesh, RepairReport& report);
+
 /// Which faces belong together across edges, and which must turn round to agree.
 struct Orientation
 {
@@ -25,7 +31,7 @@ struct Orientation
     std::uint32_t components = 0;        ///< Sets of faces that are joined.
 };
 
-/// Second step: joins the faces of every edge that has exactly two, spreads one direction over each
+/// Second step: joins faces across edges as join_edges() does, spreads one direction over each
 /// component (the one that most of its faces have; the first face's when they are equal), and cuts
 /// the edges where that leaves a contradiction. Changes nothing in the mesh.
 /// `mesh`: result of weld_and_clean(). Fills flipped_faces and non_manifold_edges of `report`.

@@ -1,13 +1,14 @@
 #pragma once
 
 #include "core/result.h"
+#include "precompute/model_view.h"
 #include "precompute/source_model.h"
 
 #include <filesystem>
 
 namespace vsplit::precompute {
 
-/// Reads a model: OBJ with its materials, PLY, OFF, STL, OM (the latter three without attributes).
+/// Reads a model: GLB, glTF 2.0, OBJ with its materials, PLY, OFF, STL, OM (the latter three without attributes).
 /// Polygons are triangulated as fans. Nothing is repaired; see repair_surface().
 /// `path`: the format is told by the extension, then checked against the contents; images and material
 /// libraries are read from its folder and below it, nowhere else.
@@ -17,5 +18,13 @@ namespace vsplit::precompute {
 /// EmptyMesh. Counts that a file claims are checked against its size before anything is allocated.
 /// Thread safe. Safe on untrusted input.
 [[nodiscard]] Result<SourceModel> read_surface(const std::filesystem::path& path);
+
+/// Writes a model: GLB with everything in one file, OBJ with materials and images beside it, PLY with
+/// what vertices can have and one image beside it, OFF and STL without attributes; told by the extension.
+/// model_writers.h says what each can hold. Files beside the model are named after it; every file
+/// appears under its name only when it is complete, the model last.
+/// `model`: indices in range. Errors: UnsupportedInput (unknown extension), IoError, and for GLB EmptyMesh
+/// and InputTooLarge. Deterministic. Thread safe.
+[[nodiscard]] Result<void> write_surface(const std::filesystem::path& path, const ModelView& model);
 
 }  // namespace vsplit::precompute

@@ -1,11 +1,12 @@
 #include "core/byte_writer.h"
 #include "core/file_io.h"
 #include "precompute/mesh_io.h"
+#include "precompute/model_writers.h"
+#include "precompute/surface_io.h"
 #include "precompute/text_scan.h"
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <new>
@@ -16,21 +17,11 @@
 namespace vsplit::precompute {
 namespace {
 
-void append(ByteWriter& out, std::string_view text)
-{
-    out.write_bytes(std::as_bytes(std::span(text.data(), text.size())));
-}
-
-void write_float(ByteWriter& out, double value)
-{
-    out.write(std::bit_cast<std::uint32_t>(static_cast<float>(value)));
-}
-
 void write_point(ByteWriter& out, const std::array<double, 3>& point)
 {
     for (const double coordinate : point)
     {
-        write_float(out, coordinate);
+        append_float(out, coordinate);
     }
 }
 
@@ -46,7 +37,7 @@ void append_point(ByteWriter& out, const std::array<double, 3>& point)
         static_cast<double>(static_cast<float>(point[1])),
         static_cast<double>(static_cast<float>(point[2]))
     );
-    append(out, std::string_view(line.data(), static_cast<std::size_t>(length)));
+    append_text(out, std::string_view(line.data(), static_cast<std::size_t>(length)));
 }
 
 std::string three_numbers(const Triangle& triangle, std::uint32_t first)
@@ -55,47 +46,9 @@ std::string three_numbers(const Triangle& triangle, std::uint32_t first)
            std::to_string(triangle[2] + first) + '\n';
 }
 
-void write_ply(ByteWriter& out, const IndexedMesh& mesh)
-{
-    append(
-        out,
-        "ply\nformat binary_little_endian 1.0\ncomment written by vsplit\nelement vertex " +
-            std::to_string(mesh.positions.size()) +
-            "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
-            std::to_string(mesh.triangles.size()) +
-            "\nproperty list uchar int vertex_indices\nend_header\n"
-    );
-    for (const auto& point : mesh.positions)
-    {
-        write_point(out, point);
-    }
-    for (const Triangle& triangle : mesh.triangles)
-    {
-        out.write(std::uint8_t{3});
-        for (const std::uint32_t vertex : triangle)
-        {
-            out.write(vertex);
-        }
-    }
-}
-
-void write_obj(ByteWriter& out, const IndexedMesh& mesh)
-{
-    append(out, "# written by vsplit\n");
-    for (const auto& point : mesh.positions)
-    {
-        append(out, "v ");
-        append_point(out, point);
-    }
-    for (const Triangle& triangle : mesh.triangles)
-    {
-        append(out, "f " + three_numbers(triangle, 1));
-    }
-}
-
 void write_off(ByteWriter& out, const IndexedMesh& mesh)
 {
-    append(
+    append_text(
         out,
         "OFF\n" + std::to_string(mesh.positions.size()) + ' ' +
             std::to_string(mesh.triangles.size()) + " 0\n"
@@ -106,7 +59,7 @@ void write_off(ByteWriter& out, const IndexedMesh& mesh)
     }
     for (const Triangle& triangle : mesh.triangles)
     {
-        append(out, "3 " + three_numbers(triangle, 0));
+        append_text(out, "3 " + three_numbers(triangle, 0));
     }
 }
 
@@ -132,7 +85,7 @@ void write_stl(ByteWriter& out, const IndexedMesh& mesh)
     std::array<char, 80> header{};
     constexpr std::string_view kTitle = "binary STL written by vsplit";
     std::copy(kTitle.begin(), kTitle.end(), header.begin());
-    append(out, std::string_view(header.data(), header.size()));
+    append_text(out, std::string_view(header.data(), header.size()));
     out.write(static_cast<std::uint32_t>(mesh.triangles.size()));
     for (const Triangle& triangle : mesh.triangles)
     {
@@ -145,46 +98,82 @@ void write_stl(ByteWriter& out, const IndexedMesh& mesh)
     }
 }
 
-using Writer = void (*)(ByteWriter&, const IndexedMesh&);
-
-Writer find_writer(const std::string& extension)
+template <void (*writer)(ByteWriter&, const IndexedMesh&)>
+Result<WrittenFiles> format_bare(const ModelView& model, const std::string& /*stem*/)
 {
-    constexpr std::array<std::pair<std::string_view, Writer>, 4> kWriters{{
-        {".ply", write_ply},
-        {".obj", write_obj},
-        {".off", write_off},
-        {".stl", write_stl},
+    ByteWriter out;
+    writer(out, model.mesh);
+    WrittenFiles files;
+    files.push_back({"", out.take()});
+    return files;
+}
+
+using Format = Result<WrittenFiles> (*)(const ModelView&, const std::string&);
+
+Format find_format(const std::string& extension)
+{
+    constexpr std::array<std::pair<std::string_view, Format>, 5> kFormats{{
+        {".ply",
+         [](const ModelView& model, const std::string& stem) -> Result<WrittenFiles> {
+             return format_ply(model, stem);
+         }},
+        {".obj",
+         [](const ModelView& model, const std::string& stem) -> Result<WrittenFiles> {
+             return format_obj(model, stem);
+         }},
+        {".glb", [](const ModelView& model, const std::string&) { return format_glb(model); }},
+        {".off", format_bare<write_off>},
+        {".stl", format_bare<write_stl>},
     }};
-    const auto* const found = std::find_if(kWriters.begin(), kWriters.end(), [&](const auto& row) {
+    const auto* const found = std::find_if(kFormats.begin(), kFormats.end(), [&](const auto& row) {
         return row.first == extension;
     });
-    return found == kWriters.end() ? nullptr : found->second;
+    return found == kFormats.end() ? nullptr : found->second;
+}
+
+/// Writes the files beside the model first: when it appears, it is complete.
+Result<void> write_files(const std::filesystem::path& path, const WrittenFiles& files)
+{
+    for (auto file = files.rbegin(); file != files.rend(); ++file)
+    {
+        const auto target = file->name.empty() ? path : path.parent_path() / file->name;
+        VSPLIT_TRY(write_file_atomically(target, file->bytes));
+    }
+    return {};
 }
 
 }  // namespace
 
-Result<void> write_mesh(const std::filesystem::path& path, const IndexedMesh& mesh)
+Result<void> write_surface(const std::filesystem::path& path, const ModelView& model)
 {
-    const Writer writer = find_writer(lower_case(path.extension().string()));
-    if (writer == nullptr)
+    const Format format = find_format(lower_case(path.extension().string()));
+    const std::string start = "cannot write " + path.string() + ": ";
+    if (format == nullptr)
     {
         return fail(
             ErrorCode::UnsupportedInput,
-            "cannot write " + path.string() + ": the extension is none of .ply, .obj, .off and .stl"
+            start + "the extension is none of .glb, .ply, .obj, .off and .stl"
         );
     }
     try
     {
-        ByteWriter out;
-        writer(out, mesh);
-        return write_file_atomically(path, out.view());
+        const auto files = format(model, path.stem().string());
+        if (!files)
+        {
+            const auto& [code, message, offset] = files.error();
+            return fail(code, start + message, offset);
+        }
+        return write_files(path, *files);
     }
     catch (const std::bad_alloc&)
     {
-        return fail(
-            ErrorCode::IoError, "cannot write " + path.string() + ": there is not enough memory"
-        );
+        return fail(ErrorCode::IoError, start + "there is not enough memory");
     }
+}
+
+Result<void> write_mesh(const std::filesystem::path& path, const IndexedMesh& mesh)
+{
+    return write_surface(path, {mesh});
 }
 
 }  // namespace vsplit::precompute

@@ -1,6 +1,7 @@
 #include "commands.h"
+#include "decoded_model.h"
 #include "heap_meter.h"
-#include "precompute/mesh_io.h"
+#include "precompute/surface_io.h"
 #include "report.h"
 #include "stream_file.h"
 
@@ -95,6 +96,23 @@ Result<DecodeOutcome> decode(StreamFile& stream, std::uint64_t bytes, std::uint3
     return outcome;
 }
 
+/// Decodes a prefix once more, with materials and images, and writes what it shows.
+Result<void> write_model(StreamFile& stream, std::uint64_t bytes, const std::string& output)
+{
+    codec::StreamDecoder decoder;
+    DecodedModel model;
+    double seconds = 0.0;
+    VSPLIT_TRY(stream.decode(decoder, bytes, seconds, [&](const codec::Step& step) {
+        return model.take(step);
+    }));
+    const auto images = model.images();
+    VSPLIT_TRY(images);
+    const Surface surface = stitched_surface(decoder);
+    return precompute::write_surface(
+        output, precompute::view_model(surface, model.appearance(), *images)
+    );
+}
+
 Json outcome_json(const DecodeOutcome& outcome)
 {
     return {
@@ -136,7 +154,7 @@ Result<void> run(const DecodeArguments& arguments)
     VSPLIT_TRY(outcome);
     if (!arguments.output.empty())
     {
-        VSPLIT_TRY(precompute::write_mesh(arguments.output, codec::extract_mesh(outcome->decoder)));
+        VSPLIT_TRY(write_model(*stream, prefix, arguments.output));
     }
     if (arguments.json != "-")
     {
@@ -161,7 +179,9 @@ void add_decode_command(CLI::App& app, Result<void>& result)
     CLI::App* const command =
         app.add_subcommand("decode", "Decodes a stream, or a prefix of it, into a mesh file");
     command->add_option("FILE", arguments->file, "The stream; it may be cut off")->required();
-    command->add_option("-o,--output", arguments->output, "The mesh: .ply, .obj, .off or .stl");
+    command->add_option(
+        "-o,--output", arguments->output, "The model: .glb, .obj, .ply, .off or .stl"
+    );
     command->add_option("--json", arguments->json, "Write JSON to a file, or to stdout with -");
     constexpr std::uint32_t kMostRepeats = 100000;
     command->add_option("--repeat", arguments->repeat, "Decode so often and report the median")

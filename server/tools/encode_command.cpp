@@ -1,9 +1,9 @@
 #include "commands.h"
 #include "core/file_io.h"
-#include "precompute/code_attributes.h"
-#include "precompute/encode_mesh.h"
+#include "encode_report.h"
+#include "image/texture_layout.h"
+#include "precompute/encode_model.h"
 #include "precompute/keep_region.h"
-#include "precompute/repair_surface.h"
 #include "precompute/surface_io.h"
 #include "progress_bar.h"
 #include "report.h"
@@ -13,9 +13,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -25,10 +23,6 @@
 
 namespace vsplit::tools {
 namespace {
-
-using precompute::EncodedMesh;
-using precompute::EncodeOptions;
-using precompute::RepairedMesh;
 
 /// What --drop calls the kinds of attributes.
 constexpr std::array<std::pair<std::string_view, AttributeKind>, 4> kKinds{{
@@ -40,150 +34,6 @@ constexpr std::array<std::pair<std::string_view, AttributeKind>, 4> kKinds{{
 
 /// What it calls materials, groups and images.
 constexpr std::string_view kMaterials = "materials";
-
-struct EncodeArguments
-{
-    std::string input;
-    std::string output;
-    std::string metric;
-    std::string json;
-    std::vector<std::string> keep_regions;  ///< As they were written.
-    std::string keep_mask;
-    EncodeOptions options;
-    precompute::AttributeBits bits;
-    std::vector<std::string> drop;  ///< Names of kKinds, or "materials".
-    bool attributes = true;
-    bool quiet = false;
-};
-
-struct ToolSeconds
-{
-    double read = 0.0;
-    double repair = 0.0;
-    double encode = 0.0;
-    double write = 0.0;
-};
-
-/// An encode, as far as it got.
-struct EncodeOutcome
-{
-    std::size_t input_vertices = 0;
-    std::size_t input_faces = 0;
-    std::size_t kept_vertices = 0;  ///< Marked by --keep-region and --keep-mask.
-    precompute::RepairedSurface surface;
-    Appearance appearance;
-    std::vector<SourceImage> images;
-    std::vector<std::string> dropped;  ///< What the input has and the stream has not.
-    EncodedMesh encoded;
-    ToolSeconds seconds;
-};
-
-/// Most memory that was resident at once. Not taken from getrusage(), which includes what the program
-/// that started this one had resident before it became this one.
-std::uint64_t peak_memory_bytes()
-{
-    constexpr std::string_view kField = "VmHWM:";
-    std::ifstream status("/proc/self/status");
-    for (std::string line; std::getline(status, line);)
-    {
-        if (line.starts_with(kField))
-        {
-            return std::strtoull(line.c_str() + kField.size(), nullptr, 10) * 1024U;
-        }
-    }
-    return 0;
-}
-
-Json seconds_json(const EncodeOutcome& outcome)
-{
-    const ToolSeconds& tool = outcome.seconds;
-    const precompute::EncodeSeconds& stages = outcome.encoded.seconds;
-    return {
-        {"read", tool.read},
-        {"repair", tool.repair},
-        {"metric", stages.metric},
-        {"collapse", stages.collapse},
-        {"distance", stages.distance},
-        {"code", stages.code},
-        {"write", tool.write},
-        {"total", tool.read + tool.repair + tool.encode + tool.write},
-    };
-}
-
-Json outcome_json(const EncodeArguments& arguments, const EncodeOutcome& outcome)
-{
-    const codec::StreamInfo& info = outcome.encoded.info;
-    return {
-        {"input",
-         {{"vertices", outcome.input_vertices},
-          {"faces", outcome.input_faces},
-          {"components", outcome.surface.repaired.components},
-          {"boundary_edges", outcome.surface.repaired.boundary_edges}}},
-        {"repair", repair_json(outcome.surface.repaired.report)},
-        {"vertices", info.vertex_count},
-        {"faces", info.face_count},
-        {"position_bits", info.grid.bits},
-        {"metric", arguments.metric},
-        {"kept_vertices", outcome.kept_vertices},
-        {"bytes", info.file_bytes},
-        {"header_bytes", info.header_bytes},
-        {"bits_per_vertex", bits_per_vertex(info, info.file_bytes)},
-        {"base", base_json(info)},
-        {"levels", levels_json(info)},
-        {"seconds", seconds_json(outcome)},
-        {"peak_memory_bytes", peak_memory_bytes()},
-    };
-}
-
-void print_input(const EncodeArguments& arguments, const EncodeOutcome& outcome)
-{
-    std::printf(
-        "%s: %zu vertices, %zu faces\n",
-        arguments.input.c_str(),
-        outcome.input_vertices,
-        outcome.input_faces
-    );
-    std::printf("repair: %s\n", repair_in_words(outcome.surface.repaired.report).c_str());
-    std::printf(
-        "encoding %zu vertices, %zu faces; components: %u, boundary edges: %u\n",
-        outcome.surface.repaired.mesh.positions.size(),
-        outcome.surface.repaired.mesh.triangles.size(),
-        outcome.surface.repaired.components,
-        outcome.surface.repaired.boundary_edges
-    );
-    if (outcome.kept_vertices > 0)
-    {
-        std::printf("kept for long: %zu vertices\n", outcome.kept_vertices);
-    }
-    std::fflush(stdout);
-}
-
-void print_outcome(const EncodeArguments& arguments, const EncodeOutcome& outcome)
-{
-    const codec::StreamInfo& info = outcome.encoded.info;
-    print_levels(stdout, info);
-    std::printf(
-        "%s: %llu bytes, %.2f bits a vertex at %d bits a coordinate\n",
-        arguments.output.c_str(),
-        static_cast<unsigned long long>(info.file_bytes),
-        bits_per_vertex(info, info.file_bytes),
-        info.grid.bits
-    );
-    const ToolSeconds& tool = outcome.seconds;
-    const precompute::EncodeSeconds& stages = outcome.encoded.seconds;
-    std::printf(
-        "seconds: read %.2f, repair %.2f, metric %.2f, collapse %.2f, distance %.2f, code %.2f, "
-        "write %.2f, total %.2f\n",
-        tool.read,
-        tool.repair,
-        stages.metric,
-        stages.collapse,
-        stages.distance,
-        stages.code,
-        tool.write,
-        tool.read + tool.repair + tool.encode + tool.write
-    );
-}
 
 /// Collects what --keep-region and --keep-mask mark: one number for each vertex, or none at all.
 Result<std::vector<float>> find_importance(
@@ -263,13 +113,11 @@ Result<void> load(const EncodeArguments& arguments, EncodeOutcome& outcome)
     {
         return cannot_encode(arguments, repaired.error());
     }
-    outcome.surface = std::move(*repaired);
-    outcome.appearance = std::move(model->appearance);
-    outcome.images = std::move(model->images);
     outcome.dropped = std::move(model->dropped);
     outcome.dropped.insert(
-        outcome.dropped.end(), outcome.surface.dropped.begin(), outcome.surface.dropped.end()
+        outcome.dropped.end(), repaired->dropped.begin(), repaired->dropped.end()
     );
+    outcome.model = {std::move(*repaired), std::move(model->appearance), std::move(model->images)};
     outcome.seconds.repair = watch.lap();
     return {};
 }
@@ -279,15 +127,10 @@ Result<void> encode(const EncodeArguments& arguments, bool speak, EncodeOutcome&
 {
     Stopwatch watch;
     ProgressBar bar(speak);
-    EncodeOptions options = arguments.options;
-    options.importance = std::move(outcome.surface.repaired.importance);
-    auto input = precompute::make_encode_input(std::move(outcome.surface), arguments.bits);
-    if (!input)
-    {
-        return cannot_encode(arguments, input.error());
-    }
-    auto encoded = precompute::encode_surface(
-        std::move(*input),
+    precompute::ModelOptions options = arguments.options;
+    options.mesh.importance = std::move(outcome.model.surface.repaired.importance);
+    auto encoded = precompute::encode_model(
+        std::move(outcome.model),
         options,
         [&](std::string_view stage, double share) { bar.show(stage, share); }
     );
@@ -297,7 +140,7 @@ Result<void> encode(const EncodeArguments& arguments, bool speak, EncodeOutcome&
     }
     outcome.encoded = std::move(*encoded);
     outcome.seconds.encode = watch.lap();
-    VSPLIT_TRY(write_file_atomically(arguments.output, outcome.encoded.file));
+    VSPLIT_TRY(write_file_atomically(arguments.output, outcome.encoded.mesh.file));
     outcome.seconds.write = watch.lap();
     return {};
 }
@@ -310,7 +153,7 @@ Result<void> run(EncodeArguments arguments)
             std::filesystem::path(arguments.input).replace_extension(".vsplit").string();
     }
     VSPLIT_TRY(check_not_same_file(arguments.input, arguments.output));
-    arguments.options.metric = precompute::find_metric(arguments.metric).value();
+    arguments.options.mesh.metric = precompute::find_metric(arguments.metric).value();
 
     const bool speak = !arguments.quiet && arguments.json != "-";
     EncodeOutcome outcome;
@@ -338,7 +181,7 @@ std::vector<std::string> metric_names()
 }
 
 /// Adds what says how levels are coded.
-void add_level_flags(CLI::App& command, EncodeOptions& options)
+void add_level_flags(CLI::App& command, precompute::EncodeOptions& options)
 {
     command.add_flag(
         "--uncut{false}",
@@ -360,10 +203,25 @@ void add_attribute_flags(CLI::App& command, EncodeArguments& arguments)
             ->check(CLI::Range(2, int{codec::kMaxAttributeBits}))
             ->capture_default_str();
     };
-    bits("--uv-bits", arguments.bits.tex_coord, "Bits of a texture coordinate");
-    bits("--normal-bits", arguments.bits.normal, "Bits of each of the two numbers of a normal");
-    bits("--color-bits", arguments.bits.color, "Bits of a colour's channel");
-    bits("--scalar-bits", arguments.bits.scalar, "Bits of any other number");
+    bits("--uv-bits", arguments.options.bits.tex_coord, "Bits of a texture coordinate");
+    bits(
+        "--normal-bits",
+        arguments.options.bits.normal,
+        "Bits of each of the two numbers of a normal"
+    );
+    bits("--color-bits", arguments.options.bits.color, "Bits of a colour's channel");
+    bits("--scalar-bits", arguments.options.bits.scalar, "Bits of any other number");
+    auto& images = arguments.options.images;
+    command
+        .add_option(
+            "--texture-size", images.max_size, "Longest side of images; larger ones are scaled down"
+        )
+        ->check(CLI::Range(16U, image::kMaxTextureSide))
+        ->capture_default_str();
+    command.add_option("--texture-quality", images.psnr, "Quality of images, decibels")
+        ->check(CLI::Range(15.0, 80.0))
+        ->capture_default_str();
+    command.add_flag("--texture-lossless", images.lossless, "Code images exactly");
     std::vector<std::string> names{std::string(kMaterials)};
     for (const auto& [name, kind] : kKinds)
     {
@@ -386,12 +244,15 @@ void add_attribute_flags(CLI::App& command, EncodeArguments& arguments)
 void add_encode_command(CLI::App& app, Result<void>& result)
 {
     const auto arguments = std::make_shared<EncodeArguments>();
-    EncodeOptions& options = arguments->options;
+    precompute::EncodeOptions& options = arguments->options.mesh;
     options.threads = std::max(1U, std::thread::hardware_concurrency());
     arguments->metric = std::string(precompute::metric_name(options.metric));
 
     CLI::App* const command = app.add_subcommand("encode", "Encodes a mesh into a stream");
-    command->add_option("IN", arguments->input, "The mesh: .obj, .ply, .off, .stl or .om")
+    command
+        ->add_option(
+            "IN", arguments->input, "The model: .glb, .gltf, .obj, .ply, .off, .stl or .om"
+        )
         ->required();
     command->add_option("-o,--output", arguments->output, "The stream [IN with .vsplit]");
     command->add_option("--position-bits", options.position_bits, "Bits a coordinate")

@@ -54,6 +54,7 @@ Json chunks_json(const codec::StreamInfo& info)
             {"vertices", chunk.vertices},
             {"faces", chunk.faces},
             {"ends_level", chunk.ends_level},
+            {"tag", chunk.tag},
         });
     }
     return rows;

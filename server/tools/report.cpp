@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <string_view>
@@ -68,6 +69,9 @@ Json levels_json(const codec::StreamInfo& info)
             {"vertices", level.vertices},
             {"faces", level.faces},
             {"chunk_bytes", level.chunk_bytes},
+            {"attribute_bytes", level.attribute_bytes},
+            {"image_bytes", level.other_bytes},
+            {"picture_psnr", level.picture_quality},
             {"cumulative_bytes", level.cumulative_bytes},
             {"rms_percent", percent(info, level.rms_error)},
             {"max_percent", percent(info, level.max_error)},
@@ -76,10 +80,28 @@ Json levels_json(const codec::StreamInfo& info)
     return rows;
 }
 
+Json attributes_json(const codec::StreamInfo& info)
+{
+    constexpr std::array<const char*, 4> kNames{"uv", "normals", "colors", "scalars"};
+    Json rows = Json::array();
+    for (const codec::AttributeInfo& attribute : info.attributes)
+    {
+        rows.push_back({
+            {"kind", kNames[static_cast<std::size_t>(attribute.kind)]},
+            {"set", attribute.set},
+            {"components", attribute.components},
+            {"bits", attribute.bits},
+            {"name", attribute.name},
+        });
+    }
+    return rows;
+}
+
 Json base_json(const codec::StreamInfo& info)
 {
     const codec::LevelInfo& base = info.levels.front();
-    return {{"vertices", base.vertices}, {"faces", base.faces}, {"bytes", base.chunk_bytes}};
+    return {
+        {"vertices", base.vertices}, {"faces", base.faces}, {"bytes", info.chunks.front().bytes}};
 }
 
 Json repair_json(const precompute::RepairReport& report)
@@ -113,9 +135,12 @@ double bits_per_vertex(const codec::StreamInfo& info, std::uint64_t bytes)
 
 void print_levels(std::FILE* out, const codec::StreamInfo& info)
 {
+    const bool more = std::ranges::any_of(info.levels, [](const codec::LevelInfo& level) {
+        return level.attribute_bytes + level.other_bytes > 0;
+    });
     std::fprintf(
         out,
-        "%5s %10s %11s %10s %10s %9s %9s %8s\n",
+        "%5s %10s %11s %10s %10s %9s %9s %8s%s\n",
         "level",
         "bytes",
         "cumulative",
@@ -123,13 +148,14 @@ void print_levels(std::FILE* out, const codec::StreamInfo& info)
         "faces",
         "rms %",
         "max %",
-        "bits/v"
+        "bits/v",
+        more ? " attributes     images picture dB" : ""
     );
     for (const codec::LevelInfo& level : info.levels)
     {
         std::fprintf(
             out,
-            "%5u %10llu %11llu %10u %10u %9.4f %9.4f %8.2f\n",
+            "%5u %10llu %11llu %10u %10u %9.4f %9.4f %8.2f",
             level.level,
             static_cast<unsigned long long>(level.chunk_bytes),
             static_cast<unsigned long long>(level.cumulative_bytes),
@@ -139,6 +165,17 @@ void print_levels(std::FILE* out, const codec::StreamInfo& info)
             percent(info, level.max_error),
             bits_per_vertex(info, level.cumulative_bytes)
         );
+        if (more)
+        {
+            std::fprintf(
+                out,
+                " %10llu %10llu %10.2f",
+                static_cast<unsigned long long>(level.attribute_bytes),
+                static_cast<unsigned long long>(level.other_bytes),
+                level.picture_quality
+            );
+        }
+        std::fputc('\n', out);
     }
 }
 

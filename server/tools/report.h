@@ -41,6 +41,9 @@ private:
 /// diagonal.
 [[nodiscard]] Json levels_json(const codec::StreamInfo& info);
 
+/// The attributes of a stream as JSON: kind, set, components, bits, name.
+[[nodiscard]] Json attributes_json(const codec::StreamInfo& info);
+
 /// Base mesh of a stream as JSON: vertices, faces, bytes (of its chunk).
 [[nodiscard]] Json base_json(const codec::StreamInfo& info);
 
@@ -53,7 +56,8 @@ private:
 /// Bits of file per vertex of the last level, for a prefix of `bytes`.
 [[nodiscard]] double bits_per_vertex(const codec::StreamInfo& info, std::uint64_t bytes);
 
-/// Prints one row a level for people: bytes, cumulative, vertices, faces, errors, bits per vertex.
+/// Prints one row a level for people: bytes, cumulative, vertices, faces, errors, bits per vertex; where there
+/// are any, also the bytes of attributes among them and those of materials and images behind them.
 void print_levels(std::FILE* out, const codec::StreamInfo& info);
 
 /// Refuses an output that is one of the inputs. Error: AlreadyExists.

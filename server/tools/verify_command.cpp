@@ -1,7 +1,9 @@
 #include "commands.h"
+#include "decoded_model.h"
 #include "mesh/quantization_grid.h"
-#include "precompute/mesh_io.h"
-#include "precompute/repair.h"
+#include "precompute/code_attributes.h"
+#include "precompute/repair_surface.h"
+#include "precompute/surface_io.h"
 #include "precompute/validate.h"
 #include "report.h"
 #include "stream_file.h"
@@ -25,7 +27,6 @@ struct VerifyArguments
 };
 
 using GridPoint = std::array<std::int32_t, 3>;
-using GridTriangle = std::array<GridPoint, 3>;
 
 tl::unexpected<Error> mismatch(const std::string& what)
 {
@@ -107,20 +108,51 @@ Result<void> check_length(const StreamFile& stream)
     return {};
 }
 
-/// All triangles as their positions, each in its smallest rotation, sorted: equal exactly when the
-/// same oriented triangles are there, whatever the order of vertices and faces.
-std::vector<GridTriangle> canonical_triangles(const GridMesh& mesh)
+/// A triangle's three corners: for each its position, then the coded numbers of its attributes, at the end the
+/// triangle's group.
+using CornerNumbers = std::vector<std::int32_t>;
+
+/// What lies on a mesh, with one value a wedge.
+struct WedgeValues
 {
-    std::vector<GridTriangle> triangles;
+    std::span<const Triangle> wedges;  ///< Empty: nothing lies on it.
+    std::span<const codec::AttributeInfo> attributes;
+    std::span<const std::vector<std::int32_t>> values;
+    std::span<const std::uint32_t> groups;
+};
+
+/// All triangles as the numbers of their corners, each in its smallest rotation, sorted: equal exactly when the
+/// same oriented triangles are there, whatever the order of vertices and faces.
+std::vector<CornerNumbers> canonical_triangles(const GridMesh& mesh, const WedgeValues& on)
+{
+    std::vector<CornerNumbers> triangles;
     triangles.reserve(mesh.triangles.size());
-    for (const auto& [a, b, c] : mesh.triangles)
+    for (std::size_t f = 0; f < mesh.triangles.size(); ++f)
     {
-        const GridPoint& p = mesh.positions[a];
-        const GridPoint& q = mesh.positions[b];
-        const GridPoint& r = mesh.positions[c];
-        triangles.push_back(std::min({GridTriangle{p, q, r}, {q, r, p}, {r, p, q}}));
+        std::array<CornerNumbers, 3> corners;
+        for (std::size_t k = 0; k < 3; ++k)
+        {
+            const GridPoint& point = mesh.positions[mesh.triangles[f][k]];
+            corners[k].assign(point.begin(), point.end());
+            for (std::size_t a = 0; a < on.values.size() && !on.wedges.empty(); ++a)
+            {
+                const std::size_t numbers = codec::coded_components(on.attributes[a]);
+                const auto value =
+                    std::span(on.values[a]).subspan(on.wedges[f][k] * numbers, numbers);
+                corners[k].insert(corners[k].end(), value.begin(), value.end());
+            }
+        }
+        const auto first = std::ranges::min_element(corners) - corners.begin();
+        CornerNumbers triangle;
+        for (std::size_t k = 0; k < 3; ++k)
+        {
+            const auto& corner = corners[(static_cast<std::size_t>(first) + k) % 3];
+            triangle.insert(triangle.end(), corner.begin(), corner.end());
+        }
+        triangle.push_back(on.groups.empty() ? 0 : static_cast<std::int32_t>(on.groups[f]));
+        triangles.push_back(std::move(triangle));
     }
-    std::sort(triangles.begin(), triangles.end());
+    std::ranges::sort(triangles);
     return triangles;
 }
 
@@ -153,7 +185,34 @@ std::vector<SourceVertex> stitched_vertices(
     return vertices;
 }
 
-Result<void> compare(const codec::StreamDecoder& decoder, const precompute::RepairedMesh& source)
+/// Compares what lies on the meshes, too.
+Result<void> compare_triangles(
+    const codec::StreamDecoder& decoder,
+    const GridMesh& decoded,
+    const GridMesh& expected,
+    const precompute::EncodeInput& source
+)
+{
+    if (canonical_triangles(decoded, {}) != canonical_triangles(expected, {}))
+    {
+        return mismatch("the triangles are not those of the quantised source");
+    }
+    const codec::LevelAttributes* const attributes = decoder.attributes();
+    const WedgeValues wanted{source.wedges, source.attributes, source.values, source.groups};
+    const WedgeValues found = attributes == nullptr ? WedgeValues{}
+                                                    : WedgeValues{
+                                                          attributes->wedges,
+                                                          decoder.info()->attributes,
+                                                          attributes->values,
+                                                          attributes->groups};
+    if (canonical_triangles(decoded, found) != canonical_triangles(expected, wanted))
+    {
+        return mismatch("attributes or groups are not those of the quantised source");
+    }
+    return {};
+}
+
+Result<void> compare(const codec::StreamDecoder& decoder, const precompute::EncodeInput& source)
 {
     const QuantizationGrid& grid = decoder.info()->grid;
     const QuantizationGrid expected_grid = make_grid(source.mesh.positions, grid.bits);
@@ -176,10 +235,7 @@ Result<void> compare(const codec::StreamDecoder& decoder, const precompute::Repa
     {
         return mismatch("the positions are not those of the quantised source");
     }
-    if (canonical_triangles(decoded) != canonical_triangles(expected))
-    {
-        return mismatch("the triangles are not those of the quantised source");
-    }
+    VSPLIT_TRY(compare_triangles(decoder, decoded, expected, source));
     const auto stitched = stitched_vertices(decoder.stitches(), decoded.positions);
     const auto wanted = stitched_vertices(source.stitches, expected.positions);
     if (stitched != wanted)
@@ -192,11 +248,35 @@ Result<void> compare(const codec::StreamDecoder& decoder, const precompute::Repa
     return {};
 }
 
+/// Keeps of a model what the stream has, whose encoder may have been told to drop the rest.
+precompute::AttributeBits keep_what_is_coded(const codec::StreamDecoder& decoder, Surface& surface)
+{
+    precompute::AttributeBits bits;
+    const auto& infos = decoder.info()->attributes;
+    std::erase_if(surface.attributes, [&](const SurfaceAttribute& attribute) {
+        return std::ranges::none_of(infos, [&](const codec::AttributeInfo& info) {
+            return info.kind == attribute.kind && info.set == attribute.set;
+        });
+    });
+    for (const codec::AttributeInfo& info : infos)
+    {
+        precompute::bits_of(bits, info.kind) = info.bits;
+    }
+    if (decoder.attributes() == nullptr || decoder.attributes()->groups.empty())
+    {
+        surface.groups.clear();
+    }
+    return bits;
+}
+
 Result<void> check_against(const codec::StreamDecoder& decoder, const std::string& path)
 {
-    const auto mesh = precompute::read_mesh(path);
-    VSPLIT_TRY(mesh);
-    const auto source = precompute::repair_mesh(*mesh);
+    auto model = precompute::read_surface(path);
+    VSPLIT_TRY(model);
+    const auto bits = keep_what_is_coded(decoder, model->surface);
+    auto repaired = precompute::repair_surface(model->surface);
+    VSPLIT_TRY(repaired);
+    const auto source = precompute::make_encode_input(std::move(*repaired), bits);
     VSPLIT_TRY(source);
     return compare(decoder, *source);
 }
@@ -211,8 +291,14 @@ Result<void> run(const VerifyArguments& arguments)
     codec::StreamDecoder decoder;
     IndexCheck check(info);
     double seconds = 0.0;
-    VSPLIT_TRY(stream->decode(decoder, info.file_bytes, seconds, std::ref(check)));
+    DecodedModel model;
+    const auto follow = [&](const codec::Step& step) -> Result<void> {
+        VSPLIT_TRY(model.take(step));
+        return check(step);
+    };
+    VSPLIT_TRY(stream->decode(decoder, info.file_bytes, seconds, follow));
     VSPLIT_TRY(check.finish());
+    VSPLIT_TRY(model.images());
     const auto manifold = precompute::check_manifold(codec::extract_mesh(decoder, false));
     if (!manifold)
     {

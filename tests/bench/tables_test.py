@@ -7,7 +7,7 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
 
-from benchlib import goals, tables
+from benchlib import attributes, goals, pictures, tables
 
 
 def lod(size, rms, largest=1.0):
@@ -122,6 +122,34 @@ class GoalsTest(unittest.TestCase):
         rows = list(goals.distance_rows([shown]))
         self.assertTrue(all(row["value"] == 0.5 for row in rows))
         self.assertTrue(all("2 points, 2 left out" in row["measured"] for row in rows))
+
+    def test_attributes_count_where_all_of_a_model_are_coded(self):
+        def pair(mine, theirs):
+            return {"vsplit": mine, "draco": theirs}
+
+        records = [
+            {"name": "a", "added": {"tex_coord": pair(50, 100)}, "all": pair(80, 100)},
+            {"name": "b", "added": {"tex_coord": pair(200, 100), "normal": pair(0, 100)},
+             "all": pair(1, 100)},
+        ]
+        coordinates, normals, colors, whole = attributes.goal_rows(records)
+        self.assertAlmostEqual(coordinates["value"], 1.0)
+        self.assertIn("2 of 2", coordinates["measured"])
+        self.assertIsNone(normals["value"])
+        self.assertIsNone(colors["value"])
+        self.assertAlmostEqual(whole["value"], 0.8)
+        self.assertEqual(list(attributes.goal_rows([])), [])
+
+    def test_pictures_are_won_when_at_least_as_good(self):
+        def case(mine, theirs):
+            return {"budget": 20000, "prefix": {"psnr": mine}, "lod": {"psnr": theirs}}
+
+        records = [{"name": "a", "cases": [case(30, 29), case(30, 30), case(30, 31)]},
+                   {"name": "b", "cases": [case(20, 10), case(20, 11)]}]
+        share, = pictures.goal_rows(records)
+        self.assertAlmostEqual(share["value"], 80)
+        self.assertEqual(share["verdict"], "reached")
+        self.assertEqual(list(pictures.goal_rows([])), [])
 
 
 if __name__ == "__main__":

@@ -37,6 +37,8 @@ TEST(DeviceProfile, KnowsItsNames)
     EXPECT_EQ(pda->width, 240U);
     EXPECT_EQ(pda->height, 320U);
     EXPECT_EQ(pda->memory_bytes, 16U << 20);
+    EXPECT_EQ(pda->texture_limit, 512U);
+    EXPECT_EQ(load_device("phone")->texture_limit, 2048U);
     EXPECT_EQ(load_device("phone")->name, "phone");
     EXPECT_EQ(load_device("tablet")->name, "tablet");
 }
@@ -54,6 +56,19 @@ TEST(DeviceProfile, ReadsAFile)
     EXPECT_EQ(device->height, 220U);
     EXPECT_EQ(device->memory_bytes, 1000000U);
     EXPECT_EQ(device->frame_budget, std::chrono::milliseconds(50));
+}
+
+TEST(DeviceProfile, MaySayHowLargeTexturesAre)
+{
+    const std::string text(kGoodDevice);
+    EXPECT_EQ(parse_device(text)->texture_limit, DeviceProfile{}.texture_limit);
+    const std::string start = text.substr(0, text.size() - 1);
+    const auto device = parse_device(start + R"(, "texture_limit": 128})");
+    ASSERT_TRUE(device.has_value());
+    EXPECT_EQ(device->texture_limit, 128U);
+    EXPECT_EQ(parse_device(start + R"(, "texture_limit": 0})")->texture_limit, 0U);
+    EXPECT_FALSE(parse_device(start + R"(, "texture_limit": 32769})").has_value());
+    EXPECT_FALSE(parse_device(start + R"(, "texture_limit": "big"})").has_value());
 }
 
 TEST(DeviceProfile, SaysThatAFileIsMissing)
@@ -161,6 +176,17 @@ TEST(Options, ReadEverything)
     EXPECT_EQ(options->timeout, std::chrono::milliseconds(2500));
     EXPECT_EQ(options->retries, 7U);
     EXPECT_EQ(options->up, UpAxis::Z);
+}
+
+TEST(Options, SayWhatOfTheAppearanceIsWanted)
+{
+    const auto all = parse({"h:1/m", "--device", "phone"});
+    EXPECT_TRUE(std::get<Options>(all).attributes);
+    EXPECT_EQ(std::get<Options>(all).device.texture_limit, 2048U);
+    const auto less = parse({"h:1/m", "--device", "phone", "--texture-limit", "300"});
+    EXPECT_EQ(std::get<Options>(less).device.texture_limit, 300U);
+    EXPECT_FALSE(std::get<Options>(parse({"h:1/m", "--no-attributes"})).attributes);
+    EXPECT_EQ(exit_of({"h:1/m", "--texture-limit", "40000"}), 2);
 }
 
 TEST(Options, TakeAnErrorOfZeroForNoStop)

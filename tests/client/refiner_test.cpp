@@ -84,7 +84,7 @@ TEST(Refiner, AppliesOneChunkWhenThereIsNoTime)
     for (const codec::ChunkInfo& chunk : stream.info.chunks)
     {
         Progress progress;
-        while (progress.chunk_bytes == 0)
+        while (progress.bytes.sum() == 0)
         {
             const auto taken = refiner.feed(bytes);
             ASSERT_TRUE(taken.has_value());
@@ -94,7 +94,7 @@ TEST(Refiner, AppliesOneChunkWhenThereIsNoTime)
             progress = *advanced;
         }
         applied += chunk.bytes;
-        EXPECT_EQ(progress.chunk_bytes, chunk.bytes);
+        EXPECT_EQ(progress.bytes.sum(), chunk.bytes);
         EXPECT_EQ(refiner.decoder().decoded_bytes(), applied);
     }
 }

@@ -47,7 +47,7 @@ TEST(Report, HasTheNamesThatProgramsRelyOn)
     row.level = 0;
     row.vertices = 40;
     row.faces = 76;
-    row.chunk_bytes = 300;
+    row.bytes.geometry = 300;
     row.cumulative_bytes = 700;
     row.frame_ms = {10.0, 20.0, 30.0};
     report.levels.push_back(row);
@@ -68,7 +68,16 @@ TEST(Report, HasTheNamesThatProgramsRelyOn)
     EXPECT_DOUBLE_EQ(level.at("frame_ms_median"), 20.0);
     EXPECT_DOUBLE_EQ(level.at("frame_ms_p95"), 29.0);
     EXPECT_DOUBLE_EQ(level.at("fps"), 50.0);
-    for (const char* name : {"seconds", "decode_ms", "resident_bytes"})
+    for (const char* name :
+         {"seconds",
+          "decode_ms",
+          "resident_bytes",
+          "geometry_bytes",
+          "attribute_bytes",
+          "texture_bytes",
+          "images",
+          "image_ms",
+          "texture_memory_bytes"})
     {
         EXPECT_TRUE(level.contains(name)) << name;
     }
@@ -78,6 +87,37 @@ TEST(Report, HasTheNamesThatProgramsRelyOn)
     EXPECT_EQ(totals.at("reconnects"), 2);
     EXPECT_EQ(totals.at("complete"), true);
     EXPECT_TRUE(totals.contains("seconds"));
+}
+
+TEST(Report, SplitsBytesByWhatTheyAreAbout)
+{
+    Report report;
+    report.surface = true;
+    report.texture_limit = 512;
+    report.levels.resize(2);
+    report.levels[0].bytes.add(proto::ChunkKind::Base, 100);
+    report.levels[0].bytes.add(proto::ChunkKind::Attributes, 20);
+    report.levels[1].bytes.add(proto::ChunkKind::Texture, 3);
+    report.levels[1].bytes.add(proto::ChunkKind::Stitch, 1000);
+    report.levels[1].bytes.add(proto::ChunkKind::Appearance, 4);
+    report.levels[1].images = 2;
+    report.levels[1].image_ms = 1.5;
+    const nlohmann::ordered_json json = to_json(report);
+    EXPECT_EQ(json.at("levels").at(0).at("chunk_bytes"), 120);
+    EXPECT_EQ(json.at("levels").at(1).at("texture_bytes"), 7);
+    EXPECT_EQ(json.at("totals").at("geometry_bytes"), 1100);
+    EXPECT_EQ(json.at("totals").at("attribute_bytes"), 20);
+    EXPECT_EQ(json.at("totals").at("texture_bytes"), 7);
+    EXPECT_EQ(json.at("totals").at("images"), 2);
+    EXPECT_EQ(json.at("memory").at("texture_limit"), 512);
+    // Columns stand under their heads, with and without those for attributes.
+    for (const bool surface : {false, true})
+    {
+        report.surface = surface;
+        const std::string head = table_head(report);
+        EXPECT_EQ(table_row(report, report.levels[1]).size(), head.find('\n'));
+        EXPECT_EQ(head.find("attribs") != std::string::npos, surface);
+    }
 }
 
 TEST(Report, ReadsTheResidentMemoryOfThisProcess)

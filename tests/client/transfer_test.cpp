@@ -199,5 +199,48 @@ TEST_F(TransferTest, RefusesANameThatNoServerAccepts)
     EXPECT_EQ(frame.error().code, ErrorCode::BadRequest);
 }
 
+TEST_F(TransferTest, LeavesOutRangesByAskingForWhatLiesBetween)
+{
+    transfer.leave_out({{30, 40}, {40, 55}, {80, 100}});
+    wire::Open first = open();
+    EXPECT_EQ(first.start, 0U);
+    EXPECT_EQ(first.stop.bytes, 30U);
+    ASSERT_TRUE(take(info_frame(0, 30) + data_frame(30) + done_frame()).has_value());
+    EXPECT_TRUE(transfer.has_more());
+    EXPECT_EQ(transfer.take_gaps(), (std::vector<ByteRange>{{30, 40}, {40, 55}}));
+    EXPECT_TRUE(transfer.take_gaps().empty());
+    wire::Open second = open();
+    EXPECT_EQ(second.start, 55U);
+    EXPECT_EQ(second.content_id, 77U);
+    EXPECT_EQ(second.stop.bytes, 80U);
+    ASSERT_TRUE(take(info_frame(55, 80) + data_frame(25) + done_frame()).has_value());
+    EXPECT_FALSE(transfer.has_more()) << "nothing lies behind the last gap";
+    EXPECT_EQ(transfer.take_gaps(), (std::vector<ByteRange>{{80, 100}}));
+    EXPECT_EQ(payload, 55U);
+    EXPECT_EQ(transfer.received(), 100U);
+}
+
+TEST_F(TransferTest, LeavesNothingOutOfWhatHasCome)
+{
+    open();
+    ASSERT_TRUE(take(info_frame(0, 100) + data_frame(35)).has_value());
+    transfer.leave_out({{10, 20}, {30, 40}, {60, 70}});
+    static_cast<void>(transfer.cancel());
+    ASSERT_TRUE(take(data_frame(5) + done_frame(wire::DoneReason::Cancelled)).has_value());
+    EXPECT_TRUE(transfer.take_gaps().empty());
+    EXPECT_EQ(open().stop.bytes, 60U);
+}
+
+TEST_F(TransferTest, EndsWhereTheServerStopsBeforeAGap)
+{
+    transfer.leave_out({{60, 70}});
+    StopPlan stop;
+    stop.condition.level = 2;
+    open(stop);
+    ASSERT_TRUE(take(info_frame(0, 50) + data_frame(50) + done_frame()).has_value());
+    EXPECT_FALSE(transfer.has_more());
+    EXPECT_TRUE(transfer.take_gaps().empty());
+}
+
 }  // namespace
 }  // namespace vsplit::client

@@ -33,7 +33,8 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         NamedMesh{"torus", [] { return torus(20, 12, 0.05, 3); }},
         NamedMesh{"holes", [] { return with_holes(height_field(16, 15, 0.5, 5), 0.05, 6); }},
-        NamedMesh{"book", [] { return book(7); }}
+        NamedMesh{"book", [] { return book(7); }},
+        NamedMesh{"debris", [] { return with_holes(torus(20, 12, 0.1, 7), 0.5, 8); }}
     ),
     [](const auto& instance) { return instance.param.name; }
 );

@@ -318,5 +318,52 @@ TEST(RefinementMesh, OpensTheOnlyTriangle)
     expect_split(triangle(), {.first = 1, .wedge = 1, .kind = SplitKind::BoundaryRight}, 1);
 }
 
+TEST(RefinementMesh, TakesPartsBehindWhatABatchMade)
+{
+    RefinementMesh mesh;
+    ASSERT_TRUE(set_base(mesh, on_grid(fan(7)), 30).has_value());
+    mesh.start_batch();
+    const std::vector<Split> splits{{.first = 8, .wedge = 2, .kind = SplitKind::Interior}};
+    mesh.points()[8] = {1.0F, 2.0F, 3.0F};
+    mesh.apply(splits);
+    ++mesh.valences()[3];  // as the connectivity coder does
+    ++mesh.valences()[5];
+    const std::uint32_t faces = mesh.face_count();
+    ASSERT_TRUE(mesh.add_parts(on_grid(joined(tetrahedron(), strip(3), 2.0)), kMost).has_value());
+    EXPECT_EQ(mesh.vertex_count(), 9U + 4U + 8U);
+    EXPECT_EQ(mesh.face_count(), faces + 4U + 6U);
+    expect_consistent(mesh);
+    for (std::uint32_t f = faces; f < mesh.face_count(); ++f)
+    {
+        EXPECT_EQ(mesh.faces()[f].slot, f);
+        EXPECT_GE(*std::ranges::min_element(mesh.faces()[f].vertex), 9U);
+    }
+    mesh.start_batch();
+    expect_consistent(mesh);
+}
+
+TEST(RefinementMesh, StaysAsItWasWhenPartsAreRefused)
+{
+    RefinementMesh mesh;
+    ASSERT_TRUE(set_base(mesh, on_grid(octahedron()), 30).has_value());
+    GridMesh beyond = on_grid(tetrahedron());
+    beyond.positions[1][2] = kMost + 1;
+    GridMesh twice = on_grid(tetrahedron());
+    twice.triangles.push_back(twice.triangles.front());
+    GridMesh loose = on_grid(tetrahedron());
+    loose.positions.push_back({1, 1, 1});
+    GridMesh known = on_grid(tetrahedron());
+    known.triangles[0][0] = 4;
+    for (const GridMesh& bad : {beyond, twice, loose, known})
+    {
+        const auto done = mesh.add_parts(bad, kMost);
+        ASSERT_FALSE(done.has_value());
+        EXPECT_EQ(done.error().code, ErrorCode::BadChunk);
+        EXPECT_EQ(mesh.vertex_count(), 6U);
+        EXPECT_EQ(mesh.face_count(), 8U);
+        expect_consistent(mesh);
+    }
+}
+
 }  // namespace
 }  // namespace vsplit::test

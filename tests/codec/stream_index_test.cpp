@@ -208,7 +208,7 @@ TEST(StreamIndex, HoldsMoreRowsThanALengthOfOneOrTwoBytesCounts)
 TEST(StreamIndex, RefusesUnknownRequiredKindsAndCodecs)
 {
     StreamInfo info = sample_info();
-    info.chunks[1].kind = static_cast<ChunkKind>(3);
+    info.chunks[1].kind = static_cast<ChunkKind>(4);
     EXPECT_EQ(code_of(write_header(info)), ErrorCode::UnknownRequiredChunk);
     info = sample_info();
     info.chunks[1].codec = 1;
@@ -233,6 +233,97 @@ TEST(StreamIndex, WantsOnlyOneBase)
     StreamInfo info = sample_info();
     info.chunks[3] = info.chunks[0];
     EXPECT_EQ(code_of(write_header(info)), ErrorCode::BadHeader);
+}
+
+/// A level of parts in two chunks behind the base of sample_info().
+StreamInfo parts_info()
+{
+    StreamInfo info = sample_info();
+    const ChunkInfo first{
+        .kind = ChunkKind::Parts, .ends_level = false, .bytes = 33, .vertices = 13, .faces = 17};
+    ChunkInfo last{.kind = ChunkKind::Parts, .bytes = 90, .vertices = 19, .faces = 24};
+    last.rms_error = 1.0;
+    last.max_error = 3.0;
+    const auto place = info.chunks.insert(info.chunks.begin() + 1, {first, last});
+    place[0].shift = 4;
+    place[1].shift = 4;
+    for (std::size_t i = 3; i < info.chunks.size(); ++i)
+    {
+        info.chunks[i].vertices += 9;
+        info.chunks[i].faces += 8;
+    }
+    return info;
+}
+
+TEST(StreamIndex, KeepsRowsOfParts)
+{
+    const StreamInfo written = parts_info();
+    const auto read = parse_stream_info(write_header(written));
+    ASSERT_TRUE(read.has_value()) << describe(read.error());
+    ASSERT_EQ(read->chunks.size(), written.chunks.size());
+    for (std::size_t i = 0; i < written.chunks.size(); ++i)
+    {
+        SCOPED_TRACE(i);
+        EXPECT_EQ(read->chunks[i].kind, written.chunks[i].kind);
+        EXPECT_EQ(read->chunks[i].bytes, written.chunks[i].bytes);
+        EXPECT_EQ(read->chunks[i].ends_level, written.chunks[i].ends_level);
+        EXPECT_EQ(read->chunks[i].vertices, written.chunks[i].vertices);
+        EXPECT_EQ(read->chunks[i].faces, written.chunks[i].faces);
+        EXPECT_EQ(read->chunks[i].shift, written.chunks[i].shift);
+    }
+    ASSERT_EQ(read->levels.size(), 3U);
+    EXPECT_EQ(read->levels[1].vertices, 19U);
+    EXPECT_EQ(read->levels[1].chunk_bytes, 123U);
+    EXPECT_NEAR(read->levels[1].rms_error, 1.0, 0.1);
+}
+
+TEST(StreamIndex, WantsPartsOnlyBetweenLevels)
+{
+    ASSERT_EQ(code_of(write_header(parts_info())), ErrorCode::Ok);
+    StreamInfo info = parts_info();
+    info.chunks[2].ends_level = false;  // and splits follow
+    EXPECT_EQ(code_of(write_header(info)), ErrorCode::BadHeader);
+    info.chunks.resize(3);  // and nothing follows
+    EXPECT_EQ(code_of(write_header(info)), ErrorCode::BadHeader);
+    info = parts_info();
+    std::swap(info.chunks[2], info.chunks[3]);  // splits of a level that is open
+    EXPECT_EQ(code_of(write_header(info)), ErrorCode::BadHeader);
+    info = parts_info();
+    ChunkInfo growth = info.chunks[4];
+    growth.kind = ChunkKind::Growth;
+    info.chunks.insert(info.chunks.begin() + 1, growth);  // behind a growth
+    EXPECT_EQ(code_of(write_header(info)), ErrorCode::BadHeader);
+    info = parts_info();
+    info.chunks[0].kind = ChunkKind::Parts;  // the first row is that of a base whatever it is
+    info.chunks[0].codec = 2;
+    EXPECT_EQ(code_of(write_header(info)), ErrorCode::UnknownRequiredChunk);
+}
+
+TEST(StreamIndex, RejectsPartsOfTooManyOrTooFew)
+{
+    const auto with = [](std::uint32_t vertices, std::uint32_t faces) {
+        StreamInfo info = sample_info();
+        ChunkInfo parts = info.chunks[0];
+        parts.kind = ChunkKind::Parts;
+        parts.vertices += vertices;
+        parts.faces += faces;
+        info.chunks = {info.chunks[0], parts};
+        return code_of(write_header(info));
+    };
+    EXPECT_EQ(with(3, 1), ErrorCode::Ok);
+    EXPECT_EQ(with(4096, 3 * 4096), ErrorCode::Ok);
+    EXPECT_EQ(with(2, 1), ErrorCode::BadHeader);
+    EXPECT_EQ(with(3, 0), ErrorCode::BadHeader);
+    EXPECT_EQ(with(3, 10), ErrorCode::BadHeader);
+    EXPECT_EQ(with(4097, 4097), ErrorCode::BadHeader);
+    EXPECT_EQ(with(0xFFFFFFFF, 1), ErrorCode::BadHeader);
+}
+
+TEST(StreamIndex, RefusesPartsBeyondItsLimits)
+{
+    const Bytes header = write_header(parts_info());
+    EXPECT_EQ(code_of(header, {.max_vertices = 38}), ErrorCode::LimitExceeded);
+    EXPECT_EQ(code_of(header, {.max_chunk_bytes = 89}), ErrorCode::LimitExceeded);
 }
 
 TEST(StreamIndex, WantsTheLastLevelToEnd)

@@ -1,4 +1,4 @@
-foreach(name stream_decoder_fuzzer batch_decoder_fuzzer growth_fuzzer)
+foreach(name stream_decoder_fuzzer batch_decoder_fuzzer growth_fuzzer parts_fuzzer)
     vsplit_fuzzer(${name} ${name}.cpp vsplit_encode)
     target_sources(
         ${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests/codec/shapes.cpp

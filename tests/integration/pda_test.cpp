@@ -1,4 +1,6 @@
 // The simulated PDA against a real daemon: what it counts, what it saves, how it survives cuts.
+#include "codec/stream_parts.h"
+#include "core/file_io.h"
 #include "integration/cutting_proxy.h"
 #include "integration/model_folder.h"
 #include "integration/server_process.h"
@@ -91,6 +93,39 @@ TEST_F(Pda, CountsForEveryLevelTheBytesThatTheIndexPromises)
     EXPECT_LE(
         totals.at("wire_bytes").get<double>(), 1.01 * static_cast<double>(model.bytes.size()) + 64.0
     );
+}
+
+// Real attributes would do as well; these are long, and nothing reads them.
+TEST_F(Pda, LeavesOutTheChunksThatItIsToldToLeaveOut)
+{
+    const auto model = encode("beast.ply", "beast");
+    StreamParts parts = take_apart(model.bytes);
+    const std::size_t shape_chunks = parts.chunks.size();
+    constexpr std::size_t kAttributeBytes = 1000000;
+    for (std::size_t place = 1; place <= shape_chunks; place += 2)
+    {
+        codec::ChunkInfo row = parts.info.chunks[place - 1];
+        row.kind = proto::ChunkKind::Attributes;
+        row.codec = 200;  // Of a version to come.
+        const auto at = static_cast<std::ptrdiff_t>(place);
+        parts.info.chunks.insert(parts.info.chunks.begin() + at, row);
+        parts.chunks.insert(parts.chunks.begin() + at, Bytes(kAttributeBytes, std::byte{1}));
+    }
+    const Bytes file = put_together(parts);
+    ASSERT_TRUE(write_file_atomically(root_ / "long.vsplit", file).has_value());
+    const ServerProcess server(root_, logs_);
+    // Slow enough that the first of them is still on its way when the header has come.
+    const auto pda =
+        run(command(server.port(), "long", {"--no-attributes", "--link", "8000:10"}), logs_);
+    ASSERT_EQ(pda.status, 0) << pda.errors;
+    const auto totals = json::parse(pda.output).at("totals");
+    EXPECT_EQ(totals.at("complete"), true);
+    EXPECT_EQ(totals.at("geometry_bytes"), model.bytes.size() - model.info.header_bytes);
+    const std::size_t left_out = parts.chunks.size() - shape_chunks;
+    ASSERT_GE(left_out, 3U);
+    // What still came before the Cancel did is at most what the kernels hold.
+    EXPECT_LE(totals.at("payload_bytes"), file.size() - (left_out - 1) * kAttributeBytes);
+    EXPECT_EQ(totals.at("reconnects"), 0);
 }
 
 TEST_F(Pda, ShowsAtEveryLevelTheMeshThatTheDecoderGives)

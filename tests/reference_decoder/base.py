@@ -66,11 +66,12 @@ def _coordinate_model(extent):
 class SmallBase:
     """Codec 1. Half-edge 3 f + k leads from vertex k of triangle f to the next one."""
 
-    def __init__(self, streams, vertices, faces, extent):
+    def __init__(self, streams, vertices, faces, extent, parts=False):
         require(vertices <= MAX_VERTICES and faces <= MAX_FACES * vertices)
         self.streams = streams
         self.most = vertices
         self.extent = extent
+        self.parts = parts
         self.positions = []
         self.begin = []                                              # by half-edge
         self.twin = []
@@ -97,7 +98,10 @@ class SmallBase:
                 self._cross(h)
             return
         require(self.most - len(self.positions) >= 3)
-        p = self._vertex([e // 2 for e in self.extent])
+        if self.parts and self.positions:
+            p = self._vertex(self.positions[-1])
+        else:
+            p = self._vertex([e // 2 for e in self.extent])
         q = self._vertex(self.positions[p])
         self._triangle(p, q, self._vertex(self.positions[q]))
 

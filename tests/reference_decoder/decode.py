@@ -18,7 +18,9 @@ from base import Missing, SmallBase, decode_draco
 from batches import Batches, Models
 from bits import AdaptiveBit, BitStreams, Refusal, crc32c, trace_bytes
 from growth import Growth
-from header import ATTRIBUTES, BASE, BATCH, DRACO_BASE, FIRST_OPTIONAL, GROWTH, RESIDUE, SMALL_BASE, STITCH, Header
+from header import (
+    ATTRIBUTES, BASE, BATCH, DRACO_BASE, FIRST_OPTIONAL, GROWTH, PARTS, RESIDUE, SMALL_BASE, STITCH, Header,
+)
 from mesh import Mesh
 
 PROTO = pathlib.Path(__file__).resolve().parents[2] / "proto"
@@ -95,6 +97,8 @@ class Decoder:
             self._base(row, contents)
         elif row.kind == BATCH:
             self.batches.decode(self._streams(contents), row)
+        elif row.kind == PARTS:
+            self._parts(row, contents)
         elif row.kind == GROWTH:
             if self.growth is None:
                 self.growth = Growth(self.mesh, self.batches.shift, self.header.bits, row.grown)
@@ -145,6 +149,15 @@ class Decoder:
         self.mesh = Mesh(positions, triangles)
         self.mesh.check_coordinates(((1 << self.header.bits) - 1) >> row.shift)
         self.batches = Batches(self.mesh, Models(packed_model()), self.header.bits, row.shift)
+
+    def _parts(self, row, contents):
+        vertices = row.vertices - len(self.mesh.positions)
+        extent = [edge >> row.shift for edge in self.header.extent]
+        parts = SmallBase(
+            self._streams(contents), vertices, row.faces - self.mesh.faces(), extent, parts=True
+        )
+        self.mesh.add_parts(parts.positions, parts.triangles())
+        self.mesh.check_coordinates(((1 << self.header.bits) - 1) >> row.shift)
 
     def _trace_chunk(self, row, at, chunk):
         if self.trace:

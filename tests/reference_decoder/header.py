@@ -7,11 +7,12 @@ from arithmetic import AXES, clamp, digits, l3, single
 from bits import AdaptiveBit, BitStreams, IntegerModel, Refusal, crc32c, trace_bytes
 from fields import Attribute, Entry, HeaderBytes, require
 
-BASE, BATCH, GROWTH, STITCH, ATTRIBUTES, FIRST_OPTIONAL = 0, 1, 2, 64, 65, 64
+BASE, BATCH, GROWTH, PARTS, STITCH, ATTRIBUTES, FIRST_OPTIONAL = 0, 1, 2, 3, 64, 65, 64
 RESIDUE = 0x48674BC7
 MAX_VERTICES, MAX_FACES, MAX_CHUNKS, MAX_LEVELS = 268435456, 536870910, 1048576, 1024
 MAX_ATTRIBUTES = 16
 MAX_CHUNK_BYTES = 2 ** 28
+MAX_PARTS_VERTICES, MAX_PARTS_FACES = 4096, 3
 REFINEMENT_BITS = 262144
 DRACO_BASE, SMALL_BASE = 0, 1
 # Probability of nonzero and the size x of the index's integer models.
@@ -150,14 +151,14 @@ class Index:
         self.left_splits = 0
         self.drop = self.unrefined = 0
         self.old_shift = self.shift
-        self.growing = None
+        self.growing = self.parts_start = None
         self.cost, self.seen = 320, 16
         self.boundary = 1, 4
         while len(self.rows) < chunks:
             self._other()
             self._trace_row()
             streams.refuse_exhausted()
-        require(self.left_chunks == 0 and self.shift == 0)
+        require(self.left_chunks == 0 and self.parts_start is None and self.shift == 0)
 
     def _extent(self, bits):
         raw = self.streams.raw
@@ -217,12 +218,17 @@ class Index:
             self._append(Row(kind, codec, size, tag=self.number("tag")))
             return
         require(kind != BASE)
-        if kind not in (BATCH, GROWTH) or codec != 0:
+        if kind not in (BATCH, GROWTH, PARTS) or codec != 0:
             raise Refusal("unknown-required-chunk")
         if kind == GROWTH:
+            require(self.parts_start is None)
             self._growth()
+            return
+        require(self.growing is None)
+        if kind == PARTS:
+            self._parts()
         else:
-            require(self.growing is None)
+            require(self.parts_start is None)
             self._batch()
 
     def _batch(self):
@@ -247,7 +253,7 @@ class Index:
         self.faces += 2 * splits - boundary
         require(self.faces <= MAX_FACES)
         if ends:
-            self._error_codes(self.vertices)
+            self._error_codes(self.vertices, self.start_vertices, self.drop)
         if splits > 0:
             self.cost += max(8 * size - refinement - 48, 2 * splits)
             self.seen += splits
@@ -296,11 +302,11 @@ class Index:
         self.boundary = boundary, splits
         return splits, boundary
 
-    def _error_codes(self, vertices):
+    def _error_codes(self, vertices, start, drop):
         rms, maximum = self.errors
-        expected = rms + l3(single(vertices)) - l3(single(self.start_vertices))
+        expected = rms + l3(single(vertices)) - l3(single(start))
         new_rms = clamp(expected, 0, 320) + self.streams.integer(
-            self.models["RMS"], 1 if self.drop > 0 else 0, "RMS error"
+            self.models["RMS"], 1 if drop > 0 else 0, "RMS error"
         )
         self._trace_error("RMS", new_rms)
         expected = maximum + new_rms - rms
@@ -310,6 +316,24 @@ class Index:
         self._trace_error("maximum", new_maximum)
         require(0 <= new_rms <= 320 and 0 <= new_maximum <= 320)
         self.errors = new_rms, new_maximum
+
+    def _parts(self):
+        require(self.left_chunks == 0)
+        if self.parts_start is None:
+            self.levels += 1
+            require(self.levels <= MAX_LEVELS)
+            self.parts_start = self.vertices
+        vertices, faces = self.number("vertices"), self.number("faces")
+        require(3 <= vertices <= MAX_PARTS_VERTICES and 1 <= faces <= MAX_PARTS_FACES * vertices)
+        size = self.number("bytes")
+        last = self.streams.raw(1, "last of the level") == 1
+        self.vertices += vertices
+        self.faces += faces
+        require(self.vertices <= MAX_VERTICES and self.faces <= MAX_FACES)
+        if last:
+            self._error_codes(self.vertices, self.parts_start, 0)
+            self.parts_start = None
+        self._append(Row(PARTS, 0, size, ends_level=last))
 
     def _growth(self):
         starts = self.growing is None
@@ -324,7 +348,7 @@ class Index:
             require(1 <= self.growing[1] <= MAX_FACES)
             self.start_vertices = self.vertices
             codes_before = self.errors
-            self._error_codes(self.growing[0])
+            self._error_codes(self.growing[0], self.start_vertices, self.drop)
             self.growth_errors, self.errors = self.errors, codes_before
         require(self.left_chunks > 0)
         size = self.number("bytes")

@@ -75,6 +75,18 @@ class Mesh(Corners):
         self.batch_faces = 0
         self._connect(triangles)
 
+    def add_parts(self, positions, triangles):
+        """Appends components ("Parts chunks")."""
+        parts = Mesh(positions, triangles)
+        vertices, corners, slots = len(self.positions), len(self.vertex), len(self.slot)
+        self.positions += positions
+        self.valence += parts.valence
+        self.vertex += [v if v < 0 else v + vertices for v in parts.vertex]
+        self.opposite += [o if o < 0 else o + corners for o in parts.opposite]
+        self.state += parts.state
+        self.slot += [slot + slots for slot in parts.slot]
+        self.logs += parts.logs
+
     def _connect(self, triangles):
         edges = {}
         for triangle in triangles:

@@ -1,0 +1,62 @@
+#include "precompute/encode_model.h"
+
+#include "precompute/model_textures.h"
+
+#include <chrono>
+#include <utility>
+
+namespace vsplit::precompute {
+namespace {
+
+bool is_plain(const Appearance& appearance)
+{
+    return appearance.materials.empty() && appearance.groups.size() <= 1 &&
+           appearance.images.empty();
+}
+
+}  // namespace
+
+Result<EncodedModel> encode_model(
+    RepairedModel&& model, const ModelOptions& options, const ProgressSink& progress
+)
+{
+    Surface original;
+    if (!model.images.empty())
+    {
+        original = {model.surface.repaired.mesh, model.surface.attributes, model.surface.groups};
+    }
+    auto input = make_encode_input(std::move(model.surface), options.bits);
+    VSPLIT_TRY(input);
+    auto mesh = encode_surface(std::move(*input), options.mesh, progress);
+    VSPLIT_TRY(mesh);
+    EncodedModel result;
+    result.mesh = std::move(*mesh);
+    if (is_plain(model.appearance))
+    {
+        return result;
+    }
+    const auto start = std::chrono::steady_clock::now();
+    const auto textures =
+        encode_textures(model.appearance, model.images, options.images, [&](double share) {
+            if (progress)
+            {
+                progress("images", share);
+            }
+        });
+    VSPLIT_TRY(textures);
+    auto file = insert_appearance(result.mesh.file, original, model.appearance, *textures);
+    VSPLIT_TRY(file);
+    result.mesh.file = std::move(*file);
+    auto info = codec::parse_stream_info(result.mesh.file);
+    VSPLIT_TRY(info);
+    result.mesh.info = std::move(*info);
+    for (const codec::ChunkInfo& chunk : result.mesh.info.chunks)
+    {
+        result.image_bytes += chunk.kind == proto::ChunkKind::Texture ? chunk.bytes : 0;
+    }
+    result.image_seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return result;
+}
+
+}  // namespace vsplit::precompute

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "encoded_torus.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace vsplit::client {
+
+/// encoded_torus() with a material, of which the texture comes in chunks between the levels, and an
+/// image that nothing draws. Chunks of kind Attributes hold nothing that a decoder knows.
+struct PaintedStream
+{
+    TestStream stream;
+    std::uint64_t appearance_bytes = 0;  ///< With checksums.
+    std::uint64_t drawn_bytes = 0;       ///< Texture chunks of the image that is drawn.
+    std::uint64_t idle_bytes = 0;        ///< Texture chunks of the other.
+    std::uint64_t attribute_bytes = 0;
+};
+
+/// Makes it; always the same.
+[[nodiscard]] const PaintedStream& painted_torus();
+
+}  // namespace vsplit::client

@@ -1,0 +1,3 @@
+vsplit_fuzzer(texture_fuzzer texture_fuzzer.cpp vsplit_image)
+vsplit_fuzzer(image_file_fuzzer image_file_fuzzer.cpp vsplit_image)
+vsplit_fuzzer(appearance_fuzzer appearance_fuzzer.cpp vsplit_scene)
