@@ -53,10 +53,11 @@ public:
     /// True when nothing is begun that is not complete.
     [[nodiscard]] bool settled() const { return !coder_ || coder_->settled(); }
 
-    /// Attributes as of the last chunk after which they were settled; nullptr as long as there are none.
+    /// Attributes of the last level that was completed; nullptr as long as there are none, or those of another
+    /// level have begun.
     [[nodiscard]] const LevelAttributes* shown() const
     {
-        return coder_ && coder_->has_level() ? &coder_->shown() : nullptr;
+        return coder_ && coder_->has_level() && !coder_->in_level() ? &coder_->shown() : nullptr;
     }
 
 private:
