@@ -1,7 +1,11 @@
+#include "core/file_io.h"
 #include "make_assets/models.h"
+#include "make_assets/vase.h"
 #include "make_assets/vector3.h"
 #include "precompute/mesh_io.h"
 #include "precompute/repair.h"
+#include "precompute/repair_surface.h"
+#include "precompute/surface_io.h"
 #include "precompute/validate.h"
 
 #include <gmock/gmock.h>
@@ -135,6 +139,43 @@ TEST_P(CommittedModel, IsWhatTheGeneratorMakes)
             ASSERT_NEAR(made.positions[v][axis], committed.positions[v][axis], 1e-6 * size) << v;
         }
     }
+}
+
+std::string read_text(std::string_view name)
+{
+    const auto bytes = read_file(std::filesystem::path(VSPLIT_SOURCE_DIR) / "assets" / name);
+    EXPECT_TRUE(bytes.has_value()) << name;
+    return bytes ? std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size()) : "";
+}
+
+TEST(VaseModel, IsWhatTheGeneratorMakes)
+{
+    EXPECT_EQ(obj_text(make_vase(), "vase.mtl", {"clay", "glaze"}), read_text("vase.obj"));
+    EXPECT_EQ(vase_mtl(), read_text("vase.mtl"));
+    const auto png = vase_png();
+    EXPECT_EQ(
+        std::string(reinterpret_cast<const char*>(png.data()), png.size()), read_text("vase.png")
+    );
+}
+
+TEST(VaseModel, HasSeamsHardEdgesColoursAndTwoGroups)
+{
+    const auto model =
+        precompute::read_surface(std::filesystem::path(VSPLIT_SOURCE_DIR) / "assets/vase.obj");
+    ASSERT_TRUE(model.has_value());
+    const Surface& vase = model->surface;
+    EXPECT_EQ(vase.mesh.positions.size(), 1026U);
+    EXPECT_EQ(vase.mesh.triangles.size(), 2048U);
+    EXPECT_TRUE(precompute::check_manifold(vase.mesh).has_value());
+    ASSERT_EQ(vase.attributes.size(), 3U);
+    for (const SurfaceAttribute& attribute : vase.attributes)
+    {
+        const bool seams = attribute.kind != AttributeKind::Color;
+        EXPECT_EQ(attribute.size() > vase.mesh.positions.size(), seams);
+    }
+    EXPECT_THAT(vase.groups, testing::Contains(1U));
+    EXPECT_THAT(vase.groups, testing::Contains(0U));
+    EXPECT_EQ(model->images.size(), 1U);
 }
 
 TEST(DirtyModel, IsWhatTheGeneratorMakes)

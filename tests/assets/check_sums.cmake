@@ -1,6 +1,6 @@
 # Compares every file that FOLDER/SHA256SUMS lists with its checksum, and fails when it lists too few.
 file(STRINGS ${FOLDER}/SHA256SUMS lines)
-file(GLOB models ${FOLDER}/*.ply)
+file(GLOB models ${FOLDER}/*.ply ${FOLDER}/*.obj ${FOLDER}/*.mtl ${FOLDER}/*.png)
 list(LENGTH lines line_count)
 list(LENGTH models model_count)
 if(NOT line_count EQUAL model_count)
