@@ -112,7 +112,7 @@ Result<void> Player::play()
     VSPLIT_TRY(start_refining());
     while (presenter_.needs_frames() || !reached_end())
     {
-        if (presenter_.needs_frames())
+        if (presenter_.needs_frames() && !more_of_textures_waits())
         {
             VSPLIT_TRY(presenter_.draw_frame());
             continue;
@@ -274,6 +274,16 @@ Result<void> Player::refine()
     VSPLIT_TRY(presenter_.account(*progress));
     leave_out_unwanted();
     return progress->bytes.sum() > 0 ? Result<void>{} : wait_or_draw();
+}
+
+// Decoding an image takes longer than receiving a part of it: what has come goes into one decode.
+// Not beyond a chunk of another kind, so that a level is drawn with all that came before the next one.
+bool Player::more_of_textures_waits()
+{
+    const codec::ChunkInfo* const next = refiner_->decoder().next_chunk();
+    const bool texture =
+        next != nullptr && next->kind == proto::ChunkKind::Texture && next->offset < end_;
+    return texture && presenter_.has_enough_frames() && connection_->bytes().wait(milliseconds(0));
 }
 
 Result<void> Player::pump_bytes()

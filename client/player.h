@@ -37,6 +37,7 @@ private:
     [[nodiscard]] Result<void> start_refining();
     [[nodiscard]] Result<void> feed_header();
     [[nodiscard]] Result<void> refine();
+    [[nodiscard]] bool more_of_textures_waits();
     [[nodiscard]] Result<void> pump_bytes();
     bool skip_left_out();
     [[nodiscard]] Result<void> wait_or_draw();

@@ -145,8 +145,12 @@ Result<void> Presenter::sharpen()
 
 bool Presenter::needs_frames() const
 {
-    return display_ && !report_.levels.empty() &&
-           (report_.levels.back().frame_ms.size() < options_.frames || images_.has_sharper());
+    return display_ && !report_.levels.empty() && (!has_enough_frames() || images_.has_sharper());
+}
+
+bool Presenter::has_enough_frames() const
+{
+    return !report_.levels.empty() && report_.levels.back().frame_ms.size() >= options_.frames;
 }
 
 std::optional<std::chrono::steady_clock::time_point> Presenter::next_frame() const

@@ -47,6 +47,9 @@ public:
     /// True when the last level still wants frames: so many as were asked for, or sharper textures.
     [[nodiscard]] bool needs_frames() const;
 
+    /// True when the last level has as many frames as were asked for.
+    [[nodiscard]] bool has_enough_frames() const;
+
     /// When the next frame is due for a model that turns while bytes are on their way; nothing when
     /// there is nothing to draw or enough was drawn.
     [[nodiscard]] std::optional<std::chrono::steady_clock::time_point> next_frame() const;

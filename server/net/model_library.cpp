@@ -111,6 +111,11 @@ void ModelLibrary::find_source(const std::filesystem::path& source, const Done& 
         done(tl::unexpected<Error>(target.error()));
         return;
     }
+    if (encoder_.is_stale(source, *target))
+    {
+        spdlog::info("{} refers to files that have changed", source.string());
+        forget(*target);
+    }
     if (auto cached = open_cached(*target))
     {
         done(std::move(cached));
@@ -136,6 +141,13 @@ Result<StreamPtr> ModelLibrary::open_cached(const std::filesystem::path& target)
         }
         return stream;
     });
+}
+
+void ModelLibrary::forget(const std::filesystem::path& target)
+{
+    encoder_.forget(target);
+    const std::lock_guard lock(mutex_);
+    failures_.erase(target);
 }
 
 bool ModelLibrary::join(const std::filesystem::path& target, const Done& done)

@@ -53,6 +53,7 @@ private:
     );
     [[nodiscard]] Result<StreamPtr> open_cached(const std::filesystem::path& target);
     [[nodiscard]] bool join(const std::filesystem::path& target, const Done& done);
+    void forget(const std::filesystem::path& target);
     void remember(const std::filesystem::path& target, const Error& error);
 
     std::filesystem::path root_;

@@ -13,8 +13,9 @@ namespace vsplit::net {
 namespace {
 
 constexpr std::string_view kStreamExtension = ".vsplit";
-constexpr std::array<std::string_view, 5> kSourceExtensions = {
-    ".ply", ".obj", ".off", ".stl", ".om"};
+/// Models with everything in one file come first: that is what a name without extension means.
+constexpr std::array<std::string_view, 7> kSourceExtensions = {
+    ".glb", ".gltf", ".ply", ".obj", ".off", ".stl", ".om"};
 
 bool is_source_name(const std::filesystem::path& path)
 {

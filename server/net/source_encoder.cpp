@@ -1,13 +1,17 @@
 #include "net/source_encoder.h"
 
+#include "core/file_io.h"
 #include "format.h"
 #include "net/mapped_file.h"
 #include "wire/message.h"
 
 #include <array>
 #include <cstdio>
+#include <optional>
 #include <span>
+#include <sstream>
 #include <string_view>
+#include <sys/stat.h>
 #include <system_error>
 
 namespace vsplit::net {
@@ -15,6 +19,9 @@ namespace {
 
 /// An encoder that writes more than this has gone wrong.
 constexpr std::uint64_t kMaxTargetBytes = std::uint64_t{1} << 32;
+constexpr std::uint64_t kMaxListBytes = std::uint64_t{1} << 20;
+
+using Time = std::filesystem::file_time_type;
 
 std::string hex(std::uint64_t value)
 {
@@ -68,6 +75,41 @@ void remove_leftovers(const std::filesystem::path& target, int process_id)
     std::filesystem::remove(target.string() + "." + std::to_string(process_id) + ".tmp", ignored);
 }
 
+/// Where the names of the files that a source refers to are kept.
+std::filesystem::path list_of(std::filesystem::path target)
+{
+    return target.replace_extension(".files");
+}
+
+/// Keeps the list of a child that has ended, as old as the child's start: what changes while a model is
+/// read counts as changed.
+void keep_list(const std::filesystem::path& written, const std::filesystem::path& list, Time start)
+{
+    // The clock of the file system may be a tick behind.
+    constexpr std::chrono::milliseconds kTick{10};
+    std::error_code error;
+    std::filesystem::last_write_time(written, start - kTick, error);
+    if (!error)
+    {
+        std::filesystem::rename(written, list, error);
+    }
+    if (error)
+    {
+        std::filesystem::remove(list, error);
+    }
+}
+
+/// When a file or what is known of it changed last, nanoseconds; also when an older one took its place.
+std::optional<std::int64_t> change_time(const std::filesystem::path& path)
+{
+    struct stat status = {};
+    if (::stat(path.c_str(), &status) != 0)
+    {
+        return std::nullopt;
+    }
+    return status.st_ctim.tv_sec * std::int64_t{1'000'000'000} + status.st_ctim.tv_nsec;
+}
+
 }  // namespace
 
 Result<std::filesystem::path> SourceEncoder::target_of(const std::filesystem::path& source) const
@@ -99,6 +141,38 @@ Result<std::filesystem::path> SourceEncoder::target_of(const std::filesystem::pa
                               "-" + std::to_string(mesh->bytes) + ".vsplit");
 }
 
+bool SourceEncoder::is_stale(
+    const std::filesystem::path& source, const std::filesystem::path& target
+) const
+{
+    const auto list = list_of(target);
+    const auto stamp = stamp_file(list);
+    const auto bytes = read_file(list, kMaxListBytes);
+    if (!stamp || !bytes)
+    {
+        return false;
+    }
+    std::istringstream names(
+        std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size())
+    );
+    for (std::string name; std::getline(names, name);)
+    {
+        const auto changed = change_time(source.parent_path() / name);
+        if (changed && *changed >= stamp->modified_ns)
+        {
+            return true;
+        }
+    }
+    return false;
+}
+
+void SourceEncoder::forget(const std::filesystem::path& target) const
+{
+    std::error_code ignored;
+    std::filesystem::remove(target, ignored);
+    std::filesystem::remove(list_of(target), ignored);
+}
+
 Result<void> SourceEncoder::encode(
     const std::filesystem::path& source, const std::filesystem::path& target
 ) const
@@ -108,11 +182,20 @@ Result<void> SourceEncoder::encode(
         .file_bytes = kMaxTargetBytes,
         .time = settings_.time_limit,
     };
+    const auto start = Time::clock::now();
+    const std::filesystem::path list = target.string() + ".list";
     const auto outcome = run_child(
-        {settings_.program.string(), "encode", source.string(), "-o", target.string()},
+        {settings_.program.string(),
+         "encode",
+         source.string(),
+         "-o",
+         target.string(),
+         "--companions",
+         list.string()},
         limits,
         stop_
     );
+    keep_list(list, list_of(target), start);
     if (!outcome)
     {
         return fail(ErrorCode::IoError, "the server cannot start its encoder");
@@ -122,6 +205,7 @@ Result<void> SourceEncoder::encode(
         return {};
     }
     remove_leftovers(target, outcome->process_id);
+    remove_leftovers(list, outcome->process_id);
     if (outcome->kind == ChildOutcome::Kind::Stopped)
     {
         return fail(ErrorCode::Cancelled, "the server shuts down");

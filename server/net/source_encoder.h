@@ -34,8 +34,17 @@ public:
     [[nodiscard]] Result<std::filesystem::path> target_of(const std::filesystem::path& source
     ) const;
 
+    /// Says whether a file that `source` refers to (materials, images, buffers) has changed, come or been
+    /// put in place of another since encode() made or failed to make `target`. False when nothing is known.
+    [[nodiscard]] bool is_stale(
+        const std::filesystem::path& source, const std::filesystem::path& target
+    ) const;
+
+    /// Takes an encoded form, or what is known of one that failed, out of the cache folder.
+    void forget(const std::filesystem::path& target) const;
+
     /// Encodes `source` into `target`; blocks until the child has ended. The target appears complete
-    /// or not at all. Errors: EncodeFailed with the child's own words (without the folder of the
+    /// or not at all; what the source refers to is listed beside it for is_stale(). Errors: EncodeFailed with the child's own words (without the folder of the
     /// source), IoError when it cannot be started, Cancelled after
     /// stop().
     [[nodiscard]] Result<void> encode(

@@ -122,7 +122,24 @@ Result<IndexedMesh> read_mesh(const std::filesystem::path& path)
 
 Result<SourceModel> read_surface(const std::filesystem::path& path)
 {
-    return read_model(path, companions_in(path.parent_path()));
+    std::vector<std::string> unused;
+    return read_surface(path, unused);
+}
+
+Result<SourceModel> read_surface(
+    const std::filesystem::path& path, std::vector<std::string>& companions
+)
+{
+    const ReadCompanion read = companions_in(path.parent_path());
+    return read_model(path, [&](std::string_view name) {
+        std::string portable(name);
+        std::replace(portable.begin(), portable.end(), '\\', '/');
+        if (std::find(companions.begin(), companions.end(), portable) == companions.end())
+        {
+            companions.push_back(std::move(portable));
+        }
+        return read(name);
+    });
 }
 
 }  // namespace vsplit::precompute

@@ -5,6 +5,8 @@
 #include "precompute/source_model.h"
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace vsplit::precompute {
 
@@ -18,6 +20,12 @@ namespace vsplit::precompute {
 /// EmptyMesh. Counts that a file claims are checked against its size before anything is allocated.
 /// Thread safe. Safe on untrusted input.
 [[nodiscard]] Result<SourceModel> read_surface(const std::filesystem::path& path);
+
+/// As above; `companions` gets the names of the files that the model refers to, each once, as paths from
+/// its folder, whether they are there or not, and also when the model cannot be read.
+[[nodiscard]] Result<SourceModel> read_surface(
+    const std::filesystem::path& path, std::vector<std::string>& companions
+);
 
 /// Writes a model: GLB with everything in one file, OBJ with materials and images beside it, PLY with
 /// what vertices can have and one image beside it, OFF and STL without attributes; told by the extension.

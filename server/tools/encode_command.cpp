@@ -15,6 +15,7 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -93,12 +94,33 @@ void leave_out(const EncodeArguments& arguments, precompute::SourceModel& model)
     }
 }
 
+/// Writes the names of the files that the input refers to, one a line; none that would look like two.
+Result<void> list_companions(
+    const EncodeArguments& arguments, const std::vector<std::string>& companions
+)
+{
+    if (arguments.companions.empty())
+    {
+        return {};
+    }
+    std::string text;
+    for (const std::string& name : companions)
+    {
+        text += name.find_first_of("\r\n") == name.npos ? name + "\n" : "";
+    }
+    return write_file_atomically(arguments.companions, std::as_bytes(std::span(text)));
+}
+
 /// Reads and repairs the input.
 Result<void> load(const EncodeArguments& arguments, EncodeOutcome& outcome)
 {
     Stopwatch watch;
-    auto model = precompute::read_surface(arguments.input);
+    std::vector<std::string> companions;
+    auto model = precompute::read_surface(arguments.input, companions);
+    // Also when it failed: perhaps because one of them is missing.
+    const auto listed = list_companions(arguments, companions);
     VSPLIT_TRY(model);
+    VSPLIT_TRY(listed);
     outcome.seconds.read = watch.lap();
     outcome.input_vertices = model->surface.mesh.positions.size();
     outcome.input_faces = model->surface.mesh.triangles.size();
@@ -296,6 +318,11 @@ void add_encode_command(CLI::App& app, Result<void>& result)
         ->check(CLI::Range(1U, kMostThreads))
         ->capture_default_str();
     command->add_option("--json", arguments->json, "Write JSON to a file, or to stdout with -");
+    command->add_option(
+        "--companions",
+        arguments->companions,
+        "Write the names of the files that IN refers to, one a line, to this file"
+    );
     command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
     command->callback([arguments, &result] { result = run(*arguments); });
 }

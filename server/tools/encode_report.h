@@ -16,6 +16,7 @@ struct EncodeArguments
     std::string output;
     std::string metric;
     std::string json;
+    std::string companions;  ///< File for the names of what the input refers to; empty: none.
     std::vector<std::string> keep_regions;  ///< As they were written.
     std::string keep_mask;
     std::vector<std::string> drop;  ///< Kinds of attributes, or "materials".

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <fstream>
 #include <future>
 #include <thread>
@@ -18,6 +19,9 @@ using test::Bytes;
 /// Stands in for the vsplit tool where a test needs an encoder that misbehaves: a real child process
 /// that copies the source, which here is a stream already. Its last argument is the target.
 constexpr const char* kCopy = "#!/bin/sh\necho run >> \"$0.log\"\nsleep 0.2\ncp \"$2\" \"$4\"\n";
+
+/// Longer than a file system's clock is behind.
+constexpr std::chrono::milliseconds kClockTicks{50};
 
 class ModelLibraryTest : public testing::Test
 {
@@ -114,6 +118,46 @@ TEST_F(ModelLibraryTest, EncodesAgainWhenTheSourceHasChanged)
     const auto stream = find("source.ply");
     ASSERT_TRUE(stream) << describe(stream.error());
     EXPECT_TRUE(std::ranges::equal((*stream)->bytes, changed));
+    EXPECT_EQ(runs(), 2);
+}
+
+TEST_F(ModelLibraryTest, EncodesAgainWhenWhatTheSourceRefersToHasChanged)
+{
+    // Lists two companions as the real tool does: one is there, one is missing.
+    use_encoder(std::string(kCopy) + "printf 'maps/skin.png\\nhair.png\\n' > \"$6\"\n");
+    folder_.write("root/maps/skin.png", file_);
+    std::this_thread::sleep_for(kClockTicks);
+    ModelLibrary library(root_, settings_);
+    EXPECT_TRUE(ask(library, "source.ply").get());
+    EXPECT_TRUE(ask(library, "source.ply").get());
+    EXPECT_EQ(runs(), 1);
+    folder_.write("root/other.png", file_);
+    EXPECT_TRUE(ask(library, "source.ply").get());
+    EXPECT_EQ(runs(), 1) << "nothing refers to that one";
+    for (const std::string changed : {"root/maps/skin.png", "root/hair.png"})
+    {
+        const auto before = runs();
+        std::this_thread::sleep_for(kClockTicks);
+        folder_.write(changed, file_);
+        std::this_thread::sleep_for(kClockTicks);
+        EXPECT_TRUE(ask(library, "source.ply").get());
+        EXPECT_TRUE(ask(library, "source.ply").get());
+        EXPECT_EQ(runs(), before + 1) << changed;
+    }
+}
+
+TEST_F(ModelLibraryTest, TriesAgainWhenWhatMadeTheEncoderFailHasChanged)
+{
+    use_encoder("#!/bin/sh\necho run >> \"$0.log\"\necho skin.png > \"$6\"\nexit 3\n");
+    folder_.write("root/skin.png", file_);
+    std::this_thread::sleep_for(kClockTicks);
+    ModelLibrary library(root_, settings_);
+    EXPECT_FALSE(ask(library, "source.ply").get());
+    EXPECT_FALSE(ask(library, "source.ply").get());
+    EXPECT_EQ(runs(), 1);
+    std::this_thread::sleep_for(kClockTicks);
+    folder_.write("root/skin.png", file_);
+    EXPECT_FALSE(ask(library, "source.ply").get());
     EXPECT_EQ(runs(), 2);
 }
 

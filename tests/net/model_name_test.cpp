@@ -24,6 +24,10 @@ protected:
         folder_.write("root/scans/bunny.ply", kAnything);
         folder_.write("root/horse.off", kAnything);
         folder_.write("root/goat.om", kAnything);
+        folder_.write("root/duck.obj", kAnything);
+        folder_.write("root/duck.glb", kAnything);
+        folder_.write("root/duck.png", kAnything);
+        folder_.write("root/lamp.gltf", kAnything);
         folder_.write("root/notes.txt", kAnything);
         folder_.write("secret.vsplit", kAnything);
     }
@@ -55,6 +59,10 @@ TEST_F(LocateModel, TellsSourceMeshesFromStreams)
     EXPECT_EQ(found("horse"), "horse.off");
     EXPECT_TRUE(locate_model(root_, "horse")->is_source_mesh);
     EXPECT_EQ(found("goat"), "goat.om");
+    EXPECT_EQ(found("lamp"), "lamp.gltf");
+    EXPECT_EQ(found("duck"), "duck.glb");
+    EXPECT_EQ(found("duck.obj"), "duck.obj");
+    EXPECT_TRUE(locate_model(root_, "duck.glb")->is_source_mesh);
 }
 
 TEST_F(LocateModel, NamesNeverLeaveTheRoot)
@@ -86,6 +94,7 @@ TEST_F(LocateModel, OnlyStreamsAndMeshesAreServed)
 {
     EXPECT_EQ(found("notes.txt"), "not-found");
     EXPECT_EQ(found("notes"), "not-found");
+    EXPECT_EQ(found("duck.png"), "not-found");
     EXPECT_EQ(found("scans"), "not-found");
     EXPECT_EQ(found("missing"), "not-found");
     std::filesystem::create_directory(root_ / "folder.vsplit");

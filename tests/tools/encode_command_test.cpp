@@ -22,6 +22,26 @@ void expect_keys(const nlohmann::json& object, const std::vector<std::string>& k
     }
 }
 
+TEST_F(EncodeCommand, ListsTheFilesThatTheModelRefersToWhetherTheyAreThereOrNot)
+{
+    const std::string obj = save(
+        "square.obj",
+        "mtllib square.mtl\nmtllib square.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+        "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl skin\nf 1/1 2/2 3/3 4/4\n"
+    );
+    save("square.mtl", "newmtl skin\nmap_Kd maps\\skin.png\n");
+    const Finished encoded = run({"encode", obj, "--quiet", "--companions", path("files")});
+    EXPECT_EQ(encoded.status, 0) << encoded.err;
+    EXPECT_EQ(load("files"), "square.mtl\nmaps/skin.png\n");
+
+    const std::string gltf = save(
+        "lost.gltf",
+        R"({"asset": {"version": "2.0"}, "buffers": [{"uri": "lost.bin", "byteLength": 36}]})"
+    );
+    EXPECT_NE(run({"encode", gltf, "--quiet", "--companions", path("files")}).status, 0);
+    EXPECT_EQ(load("files"), "lost.bin\n");
+}
+
 TEST_F(EncodeCommand, EncodesEveryFormatAndVerifies)
 {
     for (const std::string extension : {"ply", "obj", "off", "stl"})
