@@ -21,13 +21,10 @@ ConnectionOptions connection_options(const Options& options)
 {
     ConnectionOptions result;
     result.address = options.address;
+    const DeviceProfile& device = options.device;
+    const std::uint32_t textures = options.attributes ? device.texture_limit : 0;
     result.request = {
-        options.address.model,
-        options.device.width,
-        options.device.height,
-        options.device.memory_bytes,
-        options.attributes ? options.device.texture_limit : 0,
-    };
+        options.address.model, device.width, device.height, device.memory_bytes, textures};
     result.stop = options.stop;
     result.link = options.link;
     result.timeout = options.timeout;

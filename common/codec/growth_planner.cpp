@@ -42,12 +42,23 @@ constexpr std::size_t kSavesOneIn = 24;
 
 }  // namespace
 
-GrowthStart growth_start(std::size_t bytes, std::uint32_t vertices, int shift, bool has_attributes)
+GrowthStart growth_start(const StreamPlan& plan, std::size_t level, std::size_t bytes)
 {
-    const double share = has_attributes ? kShapeShare : 1.0;
+    const auto later = std::span(plan.levels).subspan(level + 1);
+    // What grows, grows over what is there.
+    const bool all_there = std::ranges::all_of(
+        later, &std::vector<std::vector<Triangle>>::empty, &PlannedLevel::parts
+    );
+    if (!plan.grow_last_level || plan.training != nullptr || later.empty() || !all_there)
+    {
+        return GrowthStart::Never;
+    }
+    const auto vertices = static_cast<std::uint32_t>(plan.mesh->positions.size());
+    const double share = plan.wedges.empty() ? 1.0 : kShapeShare;
     const double bits = 8.0 * static_cast<double>(bytes) / (vertices * share);
     const bool is_small = vertices < kSmallMesh;
-    if (bits >= kGrowthBits || (shift == 0 && !is_small && bits >= kGrowthBitsOnGrid))
+    const bool on_grid = plan.levels[level].shift == 0;
+    if (bits >= kGrowthBits || (on_grid && !is_small && bits >= kGrowthBitsOnGrid))
     {
         return GrowthStart::Now;
     }
@@ -72,7 +83,7 @@ bool growth_pays(std::size_t grown, std::size_t split)
 namespace {
 
 /// Bytes of a growth up to some vertices.
-Result<std::size_t> try_growth(
+Result<std::size_t> measure_growth(
     GrowthSource& source, const BatchState& state, const PredictionShares& predicted
 )
 {
@@ -87,8 +98,8 @@ Result<std::size_t> try_growth(
     return bits.bytes();
 }
 
-}  // namespace
-
+/// Tells with which of kPredictions the growth of a mesh over the coarse mesh in `state` gets shortest, by its first
+/// vertices; nothing when the mesh cannot grow.
 std::optional<PredictionShares> choose_predictions(GrowthSource& source, const BatchState& state)
 {
     std::optional<PredictionShares> best;
@@ -96,7 +107,7 @@ std::optional<PredictionShares> choose_predictions(GrowthSource& source, const B
     for (const PredictionShares& predicted : kPredictions)
     {
         source.restart();
-        const auto bytes = try_growth(source, state, predicted);
+        const auto bytes = measure_growth(source, state, predicted);
         if (bytes && (!best || *bytes < least))
         {
             best = predicted;
@@ -106,6 +117,7 @@ std::optional<PredictionShares> choose_predictions(GrowthSource& source, const B
     return best;
 }
 
+/// Codes the growth of a freshly started source.
 Result<CodedGrowth> code_growth(
     GrowthSource& source, const BatchState& state, const PredictionShares& predicted
 )
@@ -145,6 +157,24 @@ Result<CodedGrowth> code_growth(
         coded.sources[growth.numbers()[t]] = source.vertex(t);
     }
     return coded;
+}
+
+}  // namespace
+
+Result<std::optional<CodedGrowth>> try_growth(
+    const GridMesh& mesh, std::span<const std::uint32_t> place, const BatchState& state
+)
+{
+    GrowthSource source(mesh, place);
+    const auto predicted = choose_predictions(source, state);
+    if (!predicted)
+    {
+        return std::nullopt;
+    }
+    source.restart();
+    auto coded = code_growth(source, state, *predicted);
+    VSPLIT_TRY(coded);
+    return std::optional<CodedGrowth>(std::move(*coded));
 }
 
 }  // namespace vsplit::codec

@@ -2,12 +2,14 @@
 
 #include "codec/batch_coder.h"
 #include "codec/growth_coder.h"
+#include "codec/stream_encoder.h"
 #include "core/result.h"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace vsplit::codec {
@@ -26,10 +28,9 @@ enum class GrowthStart : std::uint8_t
     Now,       ///< It shows enough.
 };
 
-/// Judges a prefix. `bytes`: of the chunks so far; `vertices`: of the complete mesh; `shift`: of the
-/// prefix's level; `has_attributes`: the prefix will also hold attributes, not counted in `bytes`.
+/// Judges a prefix. `level`: the last one it has; `bytes`: of its chunks, attributes excluded.
 [[nodiscard]] GrowthStart growth_start(
-    std::size_t bytes, std::uint32_t vertices, int shift, bool has_attributes
+    const StreamPlan& plan, std::size_t level, std::size_t bytes
 );
 
 /// Says whether a mesh is so regular that its growth is short beside the prefix: then little is lost while
@@ -47,19 +48,13 @@ struct CodedGrowth
     std::vector<std::uint32_t> sources;          ///< By vertex of the stream that of the source.
 };
 
-/// Tells with which of kPredictions the growth of a mesh over the coarse mesh in `state` gets shortest, by
-/// its first vertices; nothing when the mesh cannot grow. `source`: the complete mesh, to be restarted
-/// afterwards. Cost: about half a microsecond a vertex.
-[[nodiscard]] std::optional<PredictionShares> choose_predictions(
-    GrowthSource& source, const BatchState& state
-);
-
-/// Codes the growth of a mesh over the coarse mesh in `state`, in chunks within proto::kTargetChunkBytes.
-/// `source`: the complete mesh, freshly started.
-/// Errors: Internal (not a manifold, a component without a coarse vertex), BadChunk (the border gets
-/// longer than it may). Cost: about a microsecond a vertex.
-[[nodiscard]] Result<CodedGrowth> code_growth(
-    GrowthSource& source, const BatchState& state, const PredictionShares& predicted
+/// Codes the growth of a mesh over the coarse mesh in `state`, in chunks within proto::kTargetChunkBytes, with
+/// those predictions by which it gets shortest. `mesh`: the complete one; `place`: by vertex its number in the
+/// coarse mesh, or GrowthSource::kNone. Result: nothing when the mesh cannot grow.
+/// Errors: Internal (not a manifold, a component without a coarse vertex), BadChunk (the border gets longer than
+/// it may). Cost: about two microseconds a vertex.
+[[nodiscard]] Result<std::optional<CodedGrowth>> try_growth(
+    const GridMesh& mesh, std::span<const std::uint32_t> place, const BatchState& state
 );
 
 }  // namespace vsplit::codec

@@ -66,12 +66,10 @@ public:
         {
             return current(StepKind::NeedBytes);
         }
-        auto result = info_ ? decode_chunk() : decode_header();
-        if (!result)
-        {
-            error_ = result.error();
-        }
-        return result;
+        return (info_ ? decode_chunk() : decode_header()).map_error([this](const Error& error) {
+            error_ = error;
+            return error;
+        });
     }
 
     /// As StreamDecoder::complete().
@@ -84,13 +82,6 @@ public:
     const LevelAttributes* attributes() const
     {
         return attributes_.settled() ? attributes_.shown() : nullptr;
-    }
-
-    /// As StreamDecoder::level_mesh().
-    LevelMesh level_mesh() const
-    {
-        return grown() ? codec::level_mesh(growth_->faces(), growth_->positions())
-                       : codec::level_mesh(state_.mesh);
     }
 
     std::optional<StreamInfo> info_;

@@ -9,7 +9,7 @@
 #include "codec/growth_planner.h"
 #include "codec/level_cutter.h"
 #include "codec/split_planner.h"
-#include "codec/stitch_coder.h"
+#include "codec/stitch_encoder.h"
 #include "codec/weight_fit.h"
 
 #include <algorithm>
@@ -20,8 +20,6 @@
 namespace vsplit::codec {
 namespace {
 
-constexpr std::uint32_t kNoVertex = 0xFFFFFFFF;
-
 /// Builds the stream chunk by chunk, keeping the mesh as the decoder will have it.
 class StreamBuilder
 {
@@ -29,16 +27,13 @@ public:
     StreamBuilder(const StreamPlan& plan, const std::function<void(double)>& progress)
         : plan_(plan),
           progress_(progress),
-          place_(plan.mesh->positions.size(), kNoVertex),
+          place_(plan.mesh->positions.size(), GrowthSource::kNone),
           on_grid_(*plan.mesh),
           cutter_(static_cast<std::uint32_t>(plan.mesh->positions.size()))
     {
         for (const auto& position : plan.mesh->positions)
         {
-            for (std::size_t axis = 0; axis < 3; ++axis)
-            {
-                extent_[axis] = std::max(extent_[axis], position[axis]);
-            }
+            std::ranges::transform(extent_, position, extent_.begin(), std::ranges::max);
         }
         if (plan.training != nullptr)
         {
@@ -57,7 +52,7 @@ public:
         for (std::size_t level = 1; level < plan_.levels.size() && !pays(late); ++level)
         {
             VSPLIT_TRY(add_level(plan_.levels[level]));
-            const GrowthStart start = start_of_growth(level);
+            const GrowthStart start = growth_start(plan_, level, chunks_.bytes());
             if (start == GrowthStart::IfShort || start == GrowthStart::IfNeeded)
             {
                 VSPLIT_TRY(grow_if_short(late));
@@ -296,23 +291,6 @@ private:
         return static_cast<std::uint32_t>(plan_.mesh->triangles.size());
     }
 
-    GrowthStart start_of_growth(std::size_t level) const
-    {
-        const bool may = plan_.grow_last_level && plan_.training == nullptr;
-        const auto later = std::span(plan_.levels).subspan(level + 1);
-        // What grows, grows over what is there.
-        const bool all_there = std::ranges::all_of(
-            later, &std::vector<std::vector<Triangle>>::empty, &PlannedLevel::parts
-        );
-        return may && all_there && !later.empty() ? growth_start(
-                                                        chunks_.bytes(),
-                                                        plan_vertices(),
-                                                        plan_.levels[level].shift,
-                                                        !plan_.wedges.empty()
-                                                    )
-                                                  : GrowthStart::Never;
-    }
-
     /// Tries to grow when the prefix is half as long again as at the last try; keeps what is short.
     Result<void> grow_if_short(std::optional<StreamBuilder>& grown)
     {
@@ -333,17 +311,14 @@ private:
     /// mesh cannot grow.
     Result<void> grow(std::optional<StreamBuilder>& grown) const
     {
-        GrowthSource source(*plan_.mesh, place_);
-        const auto predicted = choose_predictions(source, state_);
-        if (!predicted)
+        const auto coded = try_growth(*plan_.mesh, place_, state_);
+        VSPLIT_TRY(coded);
+        if (!coded->has_value())
         {
             return {};
         }
-        source.restart();
-        const auto coded = code_growth(source, state_, *predicted);
-        VSPLIT_TRY(coded);
         grown.emplace(*this);
-        grown->add_growth(*coded);
+        grown->add_growth(**coded);
         return {};
     }
 
@@ -365,26 +340,14 @@ private:
 
     void add_stitches()
     {
-        if (plan_.stitches.empty())
+        if (!plan_.stitches.empty())
         {
-            return;
+            add_chunk(
+                proto::ChunkKind::Stitch,
+                encode_stitches(plan_.stitches, source_, plan_.mesh->positions),
+                nullptr
+            );
         }
-        // By class of the plan the first vertex of the stream that belongs to it.
-        std::vector<std::uint32_t> first(source_.size(), kNoVertex);
-        std::vector<std::uint32_t> stitches(source_.size());
-        for (std::uint32_t v = 0; v < source_.size(); ++v)
-        {
-            std::uint32_t& representative = first[plan_.stitches[source_[v]]];
-            representative = std::min(representative, v);
-            stitches[v] = representative;
-        }
-        BitEncoder bits;
-        code_stitches(
-            bits, [this](std::uint32_t v) { return plan_.mesh->positions[source_[v]]; }, stitches
-        );
-        ByteWriter chunk;
-        bits.finish(chunk);
-        add_chunk(proto::ChunkKind::Stitch, chunk.view(), nullptr);
     }
 
     /// The stream with all that lies on its meshes.

@@ -261,6 +261,28 @@ void add_attribute_flags(CLI::App& command, EncodeArguments& arguments)
     );
 }
 
+/// Adds what marks parts of the model that matter most.
+void add_keep_options(CLI::App& command, EncodeArguments& arguments)
+{
+    command
+        .add_option(
+            "--keep-region",
+            arguments.keep_regions,
+            "Keep the vertices in this ball longest: X,Y,Z,R in model units; may be repeated"
+        )
+        ->type_name("X,Y,Z,R")
+        ->allow_extra_args(false)
+        ->check([](const std::string& text) {
+            const auto sphere = precompute::parse_keep_sphere(text);
+            return sphere ? std::string() : sphere.error().message;
+        });
+    command.add_option(
+        "--keep-mask",
+        arguments.keep_mask,
+        "Keep vertices longest by a text file with one number, 0 .. 1, for each vertex of IN"
+    );
+}
+
 }  // namespace
 
 void add_encode_command(CLI::App& app, Result<void>& result)
@@ -294,23 +316,7 @@ void add_encode_command(CLI::App& app, Result<void>& result)
         )
         ->delimiter(',')
         ->allow_extra_args(false);
-    command
-        ->add_option(
-            "--keep-region",
-            arguments->keep_regions,
-            "Keep the vertices in this ball longest: X,Y,Z,R in model units; may be repeated"
-        )
-        ->type_name("X,Y,Z,R")
-        ->allow_extra_args(false)
-        ->check([](const std::string& text) {
-            const auto sphere = precompute::parse_keep_sphere(text);
-            return sphere ? std::string() : sphere.error().message;
-        });
-    command->add_option(
-        "--keep-mask",
-        arguments->keep_mask,
-        "Keep vertices longest by a text file with one number, 0 .. 1, for each vertex of IN"
-    );
+    add_keep_options(*command, *arguments);
     constexpr unsigned kMostThreads = 256;
     add_level_flags(*command, options);
     add_attribute_flags(*command, *arguments);
