@@ -200,6 +200,7 @@ Result<void> Player::start_refining()
     codec::DecodeLimits limits = header_limits(options_.device);
     limits.max_heap_bytes = options_.device.memory_bytes;
     limits.max_level = level_;
+    limits.attributes = options_.attributes;
     refiner_ = std::make_unique<Refiner>(shown, limits, options_.attributes);
     VSPLIT_TRY(feed_header());
     VSPLIT_TRY(presenter_.prepare(shown, *refiner_, texture_limit_));
@@ -213,9 +214,9 @@ Result<void> Player::start_refining()
 
 bool Player::wants(const codec::ChunkInfo& chunk) const
 {
-    const bool known = chunk.kind == proto::ChunkKind::Attributes ||
-                       chunk.kind == proto::ChunkKind::Appearance ||
-                       chunk.kind == proto::ChunkKind::Texture;
+    using Kind = proto::ChunkKind;
+    const bool known = chunk.kind == Kind::Attributes || chunk.kind == Kind::Appearance ||
+                       chunk.kind == Kind::Texture;
     return options_.attributes && known && presenter_.images().wants(chunk);
 }
 

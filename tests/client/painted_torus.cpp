@@ -86,8 +86,6 @@ PaintedStream make()
     const auto appearance = scene::encode_appearance(appearance_of_torus());
     painted.appearance_bytes = inserter.insert(1, proto::ChunkKind::Appearance, appearance.value());
     std::size_t place = 2;
-    painted.attribute_bytes =
-        inserter.insert(place++, proto::ChunkKind::Attributes, Bytes(6000, std::byte{7}));
     for (const image::TextureChunk& chunk : texture_of(four_fields(kSide), 0))
     {
         painted.drawn_bytes +=

@@ -15,7 +15,6 @@ struct PaintedStream
     std::uint64_t appearance_bytes = 0;  ///< With checksums.
     std::uint64_t drawn_bytes = 0;       ///< Texture chunks of the image that is drawn.
     std::uint64_t idle_bytes = 0;        ///< Texture chunks of the other.
-    std::uint64_t attribute_bytes = 0;
 };
 
 /// Makes it; always the same.

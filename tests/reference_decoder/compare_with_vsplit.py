@@ -15,7 +15,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 from base import Missing
 from bits import Refusal
 from decode import SKIPPED, Decoder
-from header import FIRST_OPTIONAL
+from header import ATTRIBUTES, STITCH
 
 
 def read_obj(path):
@@ -71,7 +71,7 @@ def check_index(vsplit, stream, header):
         bytes_so_far += row.size
         if row.ends_level:
             rows.append((row, bytes_so_far))
-        elif row.kind >= FIRST_OPTIONAL and rows and rows[-1][0].shift == 0:
+        elif row.kind in (STITCH, ATTRIBUTES) and rows and rows[-1][0].vertices == row.vertices:
             rows[-1] = rows[-1][0], bytes_so_far
     if len(rows) != len(printed["levels"]):
         sys.exit("the index has another number of levels")
