@@ -204,6 +204,7 @@ Result<void> Player::start_refining()
     limits.max_heap_bytes = options_.device.memory_bytes;
     limits.max_level = level_;
     refiner_ = std::make_unique<Refiner>(shown, limits, options_.attributes);
+    refiner_->stop_at(end_);
     VSPLIT_TRY(feed_header());
     VSPLIT_TRY(presenter_.prepare(shown, *refiner_, texture_limit_));
     unwanted_ = find_unwanted();
