@@ -180,9 +180,6 @@ Result<void> Player::plan()
     {
         stop_.condition.level = level_;
         end_ = codec::stop_offset(info_, stop_.condition);
-    }
-    if (restricted_)
-    {
         out_ << memory_line(options_.device, *fitting) << "level " << level_ << " of "
              << info_.levels.size() - 1 << " is the finest that fits\n";
     }
@@ -202,6 +199,7 @@ Result<void> Player::start_refining()
     limits.max_level = level_;
     limits.attributes = options_.attributes;
     refiner_ = std::make_unique<Refiner>(shown, limits, options_.attributes);
+    refiner_->stop_at(end_);
     VSPLIT_TRY(feed_header());
     VSPLIT_TRY(presenter_.prepare(shown, *refiner_, texture_limit_));
     unwanted_ = find_unwanted();
@@ -234,7 +232,7 @@ void Player::leave_out_unwanted()
         return;
     }
     knows_materials_ = true;
-    std::vector<ByteRange> unwanted = find_unwanted();
+    auto unwanted = find_unwanted();
     std::erase_if(unwanted, [this](const ByteRange& range) {
         return range.begin < refiner_->decoder().received_bytes();
     });
@@ -279,9 +277,8 @@ Result<void> Player::refine()
 bool Player::more_of_textures_waits()
 {
     const codec::ChunkInfo* const next = refiner_->decoder().next_chunk();
-    const bool texture =
-        next != nullptr && next->kind == proto::ChunkKind::Texture && next->offset < end_;
-    return texture && presenter_.has_enough_frames() && connection_->bytes().wait(milliseconds(0));
+    return next != nullptr && next->kind == proto::ChunkKind::Texture && next->offset < end_ &&
+           presenter_.has_enough_frames() && connection_->bytes().wait(milliseconds(0));
 }
 
 Result<void> Player::pump_bytes()

@@ -56,10 +56,15 @@ double Presenter::elapsed() const
 
 Result<void> Presenter::account(const Progress& progress)
 {
-    next_row_.bytes += progress.bytes;
+    // Textures that come before the next level belong to the one that shows them.
+    const bool same_level =
+        !progress.level_complete && !report_.levels.empty() && refiner_->at_level();
+    LevelRow& row = same_level ? report_.levels.back() : next_row_;
+    row.bytes += progress.bytes;
+    row.cumulative_bytes = refiner_->decoder().decoded_bytes();
     if (progress.bytes.sum() > 0)
     {
-        next_row_.decode_ms += progress.decoding.count() * 1000.0;
+        row.decode_ms += progress.decoding.count() * 1000.0;
     }
     VSPLIT_TRY(take_materials());
     if (progress.level_complete)

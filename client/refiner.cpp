@@ -131,6 +131,10 @@ bool Refiner::awaits_attributes() const
     const std::vector<codec::ChunkInfo>& chunks = decoder_.info()->chunks;
     for (auto i = static_cast<std::size_t>(next - chunks.data()); i < chunks.size(); ++i)
     {
+        if (chunks[i].offset + chunks[i].bytes > end_)
+        {
+            return false;
+        }
         if (is_required(chunks[i]) || chunks[i].kind == proto::ChunkKind::Attributes)
         {
             return !is_required(chunks[i]);

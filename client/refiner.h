@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 
 namespace vsplit::client {
@@ -77,6 +78,9 @@ public:
     /// appearance's sink; the mesh shown before stays good.
     [[nodiscard]] Result<Progress> advance(std::chrono::duration<double> budget);
 
+    /// Says that nothing from an offset of the stream on will come: no level waits for its attributes there.
+    void stop_at(std::uint64_t end) { end_ = end; }
+
     /// Passes over the next chunk; see codec::StreamDecoder::skip().
     void skip();
 
@@ -84,7 +88,7 @@ public:
     [[nodiscard]] bool shows_surface() const { return attributes_; }
 
     /// True when the mesh is a level and not on its way to one.
-    [[nodiscard]] bool at_level() const { return at_level_; }
+    [[nodiscard]] bool at_level() const { return at_level_ && !awaiting_; }
 
     /// The arrays of the level that was reached, with its attributes if they came with it.
     /// `appearance`: its materials sort the triangles; may be null. Cost: linear in the level.
@@ -112,6 +116,7 @@ private:
     TriangleSource triangles_;
     AppearanceSink sink_;
     bool attributes_ = false;
+    std::uint64_t end_ = std::numeric_limits<std::uint64_t>::max();
     bool at_level_ = false;
     bool awaiting_ = false;  ///< The level is reached, its attributes are on their way.
     bool fitting_ = false;   ///< The decoder's attributes are those of the level.

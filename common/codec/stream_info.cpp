@@ -42,9 +42,11 @@ Result<std::span<const std::byte>> chunk_contents(
 std::uint64_t stop_offset(const StreamInfo& info, const StopCondition& stop)
 {
     const auto too_far = [&](const ChunkInfo& chunk) {
-        return chunk.offset + chunk.bytes > stop.bytes || chunk.faces > stop.faces;
+        return chunk.offset + chunk.bytes > stop.bytes ||
+               (!is_optional(chunk.kind) && chunk.faces > stop.faces);
     };
-    std::uint64_t end = info.levels.front().cumulative_bytes;
+    // Not the first level's end: its attributes may be more than what is asked for.
+    std::uint64_t end = info.chunks.front().offset + info.chunks.front().bytes;
     std::uint32_t level = 0;
     double error = info.levels.front().rms_error;
     for (std::size_t i = 1; i < info.chunks.size(); ++i)

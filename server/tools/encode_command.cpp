@@ -217,6 +217,18 @@ void add_level_flags(CLI::App& command, precompute::EncodeOptions& options)
     );
 }
 
+/// Adds what says what is told, and to whom.
+void add_output_flags(CLI::App& command, EncodeArguments& arguments)
+{
+    command.add_option("--json", arguments.json, "Write JSON to a file, or to stdout with -");
+    command.add_option(
+        "--companions",
+        arguments.companions,
+        "Write the names of the files that IN refers to, one a line, to this file"
+    );
+    command.add_flag("--quiet", arguments.quiet, "Print nothing but errors");
+}
+
 /// Adds what says how attributes are coded.
 void add_attribute_flags(CLI::App& command, EncodeArguments& arguments)
 {
@@ -323,13 +335,7 @@ void add_encode_command(CLI::App& app, Result<void>& result)
     command->add_option("--threads", options.threads, "Worker threads; do not change the result")
         ->check(CLI::Range(1U, kMostThreads))
         ->capture_default_str();
-    command->add_option("--json", arguments->json, "Write JSON to a file, or to stdout with -");
-    command->add_option(
-        "--companions",
-        arguments->companions,
-        "Write the names of the files that IN refers to, one a line, to this file"
-    );
-    command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
+    add_output_flags(*command, *arguments);
     command->callback([arguments, &result] { result = run(*arguments); });
 }
 

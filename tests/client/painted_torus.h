@@ -8,7 +8,7 @@
 namespace vsplit::client {
 
 /// encoded_torus() with a material, of which the texture comes in chunks between the levels, and an
-/// image that nothing draws. Chunks of kind Attributes hold nothing that a decoder knows.
+/// image that nothing draws. Its chunk of attributes is coded in a way that is not known yet.
 struct PaintedStream
 {
     TestStream stream;

@@ -280,6 +280,18 @@ TEST_F(Painted, StopsWhereItIsToldTo)
     EXPECT_GT(first.at("totals").at("attribute_bytes"), 0);
     EXPECT_EQ(first.at("totals").at("complete"), false);
 
+    // The base comes however little is asked for, then without its attributes.
+    const auto base = show(server.port(), "rings", {"--bytes", "1"});
+    EXPECT_EQ(base.at("levels").size(), 1U);
+    EXPECT_EQ(
+        base.at("totals").at("payload_bytes"),
+        model.info.chunks[0].offset + model.info.chunks[0].bytes
+    );
+    EXPECT_EQ(base.at("totals").at("attribute_bytes"), 0);
+    const auto faces = show(server.port(), "rings", {"--faces", "1"});
+    EXPECT_EQ(faces.at("levels").size(), 1U);
+    EXPECT_GT(faces.at("totals").at("attribute_bytes"), 0);
+
     const std::uint64_t most = model.bytes.size() / 2;
     const auto half = show(server.port(), "rings", {"--bytes", std::to_string(most)});
     EXPECT_LE(half.at("totals").at("payload_bytes"), most);
