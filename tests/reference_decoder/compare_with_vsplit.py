@@ -18,15 +18,14 @@ from decode import SKIPPED, Decoder
 from header import ATTRIBUTES, STITCH
 
 
-def read_obj(path):
-    vertices, triangles = [], []
-    for line in path.read_text(encoding="ascii").splitlines():
-        kind, *values = line.split()
-        if kind == "v":
-            vertices.append([float(value) for value in values])
-        elif kind == "f":
-            triangles.append(tuple(int(value.split("/")[0]) - 1 for value in values))
-    return vertices, triangles
+def read_off(path):
+    """OFF holds the shape alone: vertices and triangles as they are numbered."""
+    words = path.read_text(encoding="ascii").split()
+    vertex_count, face_count = int(words[1]), int(words[2])
+    numbers = words[4:]
+    vertices = [[float(x) for x in numbers[3 * v:3 * v + 3]] for v in range(vertex_count)]
+    faces = numbers[3 * vertex_count:]
+    return vertices, [tuple(int(x) for x in faces[4 * f + 1:4 * f + 4]) for f in range(face_count)]
 
 
 def shown(header, positions, shift):
@@ -46,11 +45,11 @@ def stitched(positions, triangles, one):
 
 
 def check_level(vsplit, stream, level, expected, cell):
-    path = stream.with_suffix(".obj")
+    path = stream.with_suffix(".off")
     subprocess.run(
         [vsplit, "decode", stream, "--level", str(level), "-o", path], check=True, capture_output=True
     )
-    vertices, triangles = read_obj(path)
+    vertices, triangles = read_off(path)
     if triangles != expected[1] or len(vertices) != len(expected[0]):
         sys.exit(f"level {level}: other triangles")
     for v, (a, b) in enumerate(zip(vertices, expected[0])):
