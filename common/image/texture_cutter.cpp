@@ -14,8 +14,10 @@ namespace {
 
 constexpr std::uint64_t kLeastChunkBytes = 400;
 
-/// Room for numbers, header and checksum beside the packets.
-constexpr std::uint64_t kMostPacketBytes = proto::kTargetChunkBytes - 64;
+/// Packets in a chunk, short enough that a prefix of any length shows nearly all that it holds; leaves room
+/// for numbers, header and checksum.
+constexpr std::uint64_t kMostPacketBytes = 6000;
+static_assert(kMostPacketBytes + 64 <= proto::kTargetChunkBytes);
 
 /// Consecutive packets of one layer and group.
 struct Run

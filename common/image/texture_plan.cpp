@@ -132,6 +132,7 @@ struct MeasuredPlan
 {
     TexturePlan plan;
     std::vector<CurvePoint> curve;
+    bool exact = false;
 };
 
 /// Compares curves measured at the same lengths: the mean of the decibels decides.
@@ -154,6 +155,12 @@ Result<MeasuredPlan> plan_lossy(
     VSPLIT_TRY(coded);
     const auto curve = quality_curve(raster, header, *coded, options);
     VSPLIT_TRY(curve);
+    if (header.reversible && coded->bytes.size() <= options.exact_bytes)
+    {
+        const auto all = static_cast<double>(coded->bytes.size());
+        return MeasuredPlan{
+            {header, spaced_ends(options, all, options.layer_ratio, true)}, *curve, true};
+    }
     const double cheap =
         std::min(cheap_bytes(raster, options), bytes_for_quality(*curve, options.cheap_psnr));
     const double wanted = bytes_for_quality(*curve, options.psnr + kInterpolationMargin);
@@ -213,7 +220,8 @@ Result<TexturePlan> plan_texture(const Raster& raster, const TextureOptions& opt
     const auto sharp = plan_lossy(raster, header, options);
     VSPLIT_TRY(smooth);
     VSPLIT_TRY(sharp);
-    return is_better(sharp->curve, smooth->curve) ? sharp->plan : smooth->plan;
+    const bool is_sharp = sharp->exact || is_better(sharp->curve, smooth->curve);
+    return is_sharp ? sharp->plan : smooth->plan;
 }
 
 }  // namespace vsplit::image
