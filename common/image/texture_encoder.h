@@ -20,7 +20,7 @@ struct TextureOptions
     /// Quality wanted as long as an image stays below the next number: it costs little, and whoever has
     /// enough stops before.
     double cheap_psnr = 64.0;
-    double cheap_bits_per_pixel = 0.7;
+    double cheap_bits_per_pixel = 0.8;
     std::uint32_t exact_bytes = 24000;  ///< Images that take no more without loss are coded so.
     bool lossless = false;              ///< Exact (after scaling down); `psnr` does not count then.
     bool is_normal_map = false;         ///< Channels are directions, not a colour.

@@ -18,6 +18,9 @@ constexpr std::uint32_t kCoarsestSide = 48;
 /// Interpolated lengths tend to be a little short, decibels.
 constexpr double kInterpolationMargin = 0.2;
 
+/// Differences between images that are better than this are not seen, decibels.
+constexpr double kSeenPsnr = 42.0;
+
 /// Steps between the lengths at which quality is measured.
 constexpr double kCurveRatio = 2.0;
 
@@ -135,13 +138,17 @@ struct MeasuredPlan
     bool exact = false;
 };
 
-/// Compares curves measured at the same lengths: the mean of the decibels decides.
+/// Compares curves measured at the same lengths: the mean of the decibels decides, as long as one is below
+/// what is seen; further on the sharper wavelet is always the better one.
 bool is_better(const std::vector<CurvePoint>& a, const std::vector<CurvePoint>& b)
 {
     double gain = 0.0;
     for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
     {
-        gain += a[i].psnr - b[i].psnr;
+        if (std::min(a[i].psnr, b[i].psnr) < kSeenPsnr || i == 0)
+        {
+            gain += a[i].psnr - b[i].psnr;
+        }
     }
     return gain > 0.0;
 }
