@@ -14,8 +14,12 @@ namespace {
 
 constexpr std::uint64_t kLeastChunkBytes = 400;
 
-/// Room for numbers, header and checksum beside the packets.
-constexpr std::uint64_t kMostPacketBytes = proto::kTargetChunkBytes - 64;
+/// Packets in a chunk, short enough that a prefix of any length shows nearly all that it holds; leaves room
+/// for numbers, header and checksum.
+constexpr std::uint64_t kMostPacketBytes = 6000;
+
+/// With packets that are too few for a chunk of their own.
+constexpr std::uint64_t kMostJoinedBytes = proto::kTargetChunkBytes - 64;
 
 /// Consecutive packets of one layer and group.
 struct Run
@@ -80,7 +84,7 @@ std::vector<Piece> make_pieces(const std::vector<Run>& runs, const TextureLayout
     {
         const std::uint64_t layer = runs[i].first / layout.packets_per_layer();
         const std::uint64_t bytes = sent_bytes(runs[i]);
-        const bool fits = !pieces.empty() && pieces.back().bytes + bytes <= kMostPacketBytes;
+        const bool fits = !pieces.empty() && pieces.back().bytes + bytes <= kMostJoinedBytes;
         // The first layer is the preview: one chunk, if it can be.
         const bool wanted = open || (layer == 0 && !pieces.empty());
         if (fits && wanted)
@@ -101,7 +105,7 @@ std::vector<Piece> make_pieces(const std::vector<Run>& runs, const TextureLayout
         }
         Piece& before = pieces[pieces.size() - 2];
         const bool joins = before.layer == pieces.back().layer || i + 1 == runs.size();
-        if (joins && before.bytes + pieces.back().bytes <= kMostPacketBytes)
+        if (joins && before.bytes + pieces.back().bytes <= kMostJoinedBytes)
         {
             before.end_run = pieces.back().end_run;
             before.bytes += pieces.back().bytes;

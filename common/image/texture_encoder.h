@@ -17,12 +17,15 @@ struct TextureOptions
     std::uint32_t image = 0;        ///< Its index in Appearance::images, below 2^19.
     std::uint32_t max_size = 2048;  ///< Longest side, pixels; larger images are scaled down.
     double psnr = 40.0;             ///< Quality of all chunks together, decibels.
-    double cheap_psnr = 48.0;  ///< Quality wanted as long as an image stays below the next number.
-    double cheap_bits_per_pixel = 0.25;
-    bool lossless = false;       ///< Exact (after scaling down); `psnr` does not count then.
-    bool is_normal_map = false;  ///< Channels are directions, not a colour.
+    /// Quality wanted as long as an image stays below the next number: it costs little, and whoever has
+    /// enough stops before.
+    double cheap_psnr = 64.0;
+    double cheap_bits_per_pixel = 0.8;
+    std::uint32_t exact_bytes = 24000;  ///< Images that take no more without loss are coded so.
+    bool lossless = false;              ///< Exact (after scaling down); `psnr` does not count then.
+    bool is_normal_map = false;         ///< Channels are directions, not a colour.
     std::uint32_t preview_bytes = 1400;  ///< About the length of the first chunk.
-    double layer_ratio = 1.414;  ///< About how much longer each quality layer makes the prefix.
+    double layer_ratio = 1.25;  ///< About how much longer each quality layer makes the prefix.
     /// Measure TextureChunk::squared_error after every chunk, not only after every layer and between
     /// those interpolate; several times slower for large images.
     bool measure_every_chunk = false;

@@ -18,6 +18,9 @@ constexpr std::uint32_t kCoarsestSide = 48;
 /// Interpolated lengths tend to be a little short, decibels.
 constexpr double kInterpolationMargin = 0.2;
 
+/// Differences between images that are better than this are not seen, decibels.
+constexpr double kSeenPsnr = 42.0;
+
 /// Steps between the lengths at which quality is measured.
 constexpr double kCurveRatio = 2.0;
 
@@ -132,15 +135,20 @@ struct MeasuredPlan
 {
     TexturePlan plan;
     std::vector<CurvePoint> curve;
+    bool exact = false;
 };
 
-/// Compares curves measured at the same lengths: the mean of the decibels decides.
+/// Compares curves measured at the same lengths: the mean of the decibels decides, as long as one is below
+/// what is seen; further on the sharper wavelet is always the better one.
 bool is_better(const std::vector<CurvePoint>& a, const std::vector<CurvePoint>& b)
 {
     double gain = 0.0;
     for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
     {
-        gain += a[i].psnr - b[i].psnr;
+        if (std::min(a[i].psnr, b[i].psnr) < kSeenPsnr || i == 0)
+        {
+            gain += a[i].psnr - b[i].psnr;
+        }
     }
     return gain > 0.0;
 }
@@ -154,6 +162,12 @@ Result<MeasuredPlan> plan_lossy(
     VSPLIT_TRY(coded);
     const auto curve = quality_curve(raster, header, *coded, options);
     VSPLIT_TRY(curve);
+    if (header.reversible && coded->bytes.size() <= options.exact_bytes)
+    {
+        const auto all = static_cast<double>(coded->bytes.size());
+        return MeasuredPlan{
+            {header, spaced_ends(options, all, options.layer_ratio, true)}, *curve, true};
+    }
     const double cheap =
         std::min(cheap_bytes(raster, options), bytes_for_quality(*curve, options.cheap_psnr));
     const double wanted = bytes_for_quality(*curve, options.psnr + kInterpolationMargin);
@@ -213,7 +227,8 @@ Result<TexturePlan> plan_texture(const Raster& raster, const TextureOptions& opt
     const auto sharp = plan_lossy(raster, header, options);
     VSPLIT_TRY(smooth);
     VSPLIT_TRY(sharp);
-    return is_better(sharp->curve, smooth->curve) ? sharp->plan : smooth->plan;
+    const bool is_sharp = sharp->exact || is_better(sharp->curve, smooth->curve);
+    return is_sharp ? sharp->plan : smooth->plan;
 }
 
 }  // namespace vsplit::image

@@ -1,6 +1,7 @@
 #include "precompute/encode_model.h"
 
 #include "precompute/model_textures.h"
+#include "precompute/tex_coord_bits.h"
 
 #include <chrono>
 #include <utility>
@@ -25,7 +26,14 @@ Result<EncodedModel> encode_model(
     {
         original = {model.surface.repaired.mesh, model.surface.attributes, model.surface.groups};
     }
-    auto input = make_encode_input(std::move(model.surface), options.bits);
+    AttributeBits bits = options.bits;
+    if (bits.tex_coord == 0)
+    {
+        bits.tex_coord = choose_tex_coord_bits(
+            model.surface.attributes, model.appearance, options.images.max_size
+        );
+    }
+    auto input = make_encode_input(std::move(model.surface), bits);
     VSPLIT_TRY(input);
     auto mesh = encode_surface(std::move(*input), options.mesh, progress);
     VSPLIT_TRY(mesh);

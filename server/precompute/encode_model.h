@@ -24,7 +24,7 @@ struct ImageOptions
 struct ModelOptions
 {
     EncodeOptions mesh;
-    AttributeBits bits;
+    AttributeBits bits{.tex_coord = 0};  ///< 0 for texture coordinates: choose_tex_coord_bits().
     ImageOptions images;
 };
 

@@ -237,7 +237,13 @@ void add_attribute_flags(CLI::App& command, EncodeArguments& arguments)
             ->check(CLI::Range(2, int{codec::kMaxAttributeBits}))
             ->capture_default_str();
     };
-    bits("--uv-bits", arguments.options.bits.tex_coord, "Bits of a texture coordinate");
+    command
+        .add_option(
+            "--uv-bits",
+            arguments.options.bits.tex_coord,
+            "Bits of a texture coordinate [automatic: 10, or within a sixth of a texel of images]"
+        )
+        ->check(CLI::Range(2, int{codec::kMaxAttributeBits}));
     bits(
         "--normal-bits",
         arguments.options.bits.normal,

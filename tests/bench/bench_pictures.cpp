@@ -85,7 +85,7 @@ Result<nlohmann::json> peer_rows(
              {"faces", lod->faces},
              {"position_bits", lod->position_bits},
              {"tex_coord_bits", lod->tex_coord_bits},
-             {"normals", lod->normals},
+             {"normal_bits", lod->normal_bits},
              {"side", lod->side},
              {"quality", lod->quality},
              {"psnr", lod->figures.psnr},

@@ -11,6 +11,7 @@
 #include <meshoptimizer.h>
 #include <optional>
 #include <set>
+#include <span>
 
 namespace vsplit::bench {
 namespace {
@@ -20,6 +21,8 @@ constexpr std::array<double, 10> kShares{0.08, 0.15, 0.22, 0.3, 0.38, 0.47, 0.56
 /// Bits of positions and texture coordinates that are tried together; images that repeat need many.
 constexpr std::array<std::array<int, 2>, 6> kBits{
     {{9, 8}, {10, 9}, {11, 10}, {12, 11}, {12, 13}, {13, 12}}};
+/// Bits of normals that are tried; 0 leaves them out.
+constexpr std::array<int, 3> kNormalBits{0, 7, 10};
 constexpr double kLadderRatio = 0.93;
 constexpr std::size_t kFinalists = 4;
 
@@ -146,9 +149,9 @@ public:
         {
             for (std::size_t bits = 0; bits < kBits.size(); ++bits)
             {
-                for (int normals = 0; normals <= (has_normals_ ? 1 : 0); ++normals)
+                for (const int normals : std::span(kNormalBits).first(has_normals_ ? 3 : 1))
                 {
-                    VSPLIT_TRY(try_share(bytes, share, {bits, normals != 0}, candidates));
+                    VSPLIT_TRY(try_share(bytes, share, {bits, normals}, candidates));
                 }
             }
         }
@@ -174,7 +177,7 @@ private:
     struct Choice
     {
         std::size_t bits = 0;
-        bool normals = false;
+        int normal_bits = 0;
 
         friend auto operator<=>(const Choice&, const Choice&) = default;
     };
@@ -184,8 +187,13 @@ private:
     Result<std::vector<char>> code(const Key& key) const
     {
         const auto [position, tex_coord] = kBits[key.second.bits];
-        const DracoBits bits{.position = position, .tex_coord = tex_coord, .normal = 7};
-        return encode_surface_with_draco(ladder_.level(key.first, key.second.normals), bits);
+        const DracoBits bits{
+            .position = position,
+            .tex_coord = tex_coord,
+            .normal = std::max(key.second.normal_bits, 7)};
+        return encode_surface_with_draco(
+            ladder_.level(key.first, key.second.normal_bits > 0), bits
+        );
     }
 
     Result<std::size_t> bytes_of(const Key& key)
@@ -235,7 +243,7 @@ private:
         lod.faces = surface->mesh.triangles.size();
         lod.position_bits = kBits[key.second.bits][0];
         lod.tex_coord_bits = kBits[key.second.bits][1];
-        lod.normals = key.second.normals;
+        lod.normal_bits = key.second.normal_bits;
         lod.shown.surface = std::move(*surface);
         lod.shown.appearance = original_.appearance;
         if (images_)

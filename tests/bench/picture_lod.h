@@ -17,7 +17,7 @@ struct PictureLod
     std::size_t faces = 0;
     int position_bits = 0;
     int tex_coord_bits = 0;
-    bool normals = false;    ///< Whether the Draco file has them.
+    int normal_bits = 0;     ///< 0: left out.
     std::uint32_t side = 0;  ///< Of the image, pixels.
     int quality = 0;         ///< Of the image.
     PictureFigures figures{};

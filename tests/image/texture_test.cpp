@@ -46,7 +46,8 @@ TEST(Texture, ReachesTheQualityThatWasAskedFor)
     for (std::uint8_t channels = 1; channels <= 4; ++channels)
     {
         const Raster raster = sample_raster(300, 200, channels);
-        const auto texture = encoded(raster, {.psnr = 38.0, .cheap_bits_per_pixel = 0.0});
+        const auto texture =
+            encoded(raster, {.psnr = 38.0, .cheap_bits_per_pixel = 0.0, .exact_bytes = 0});
         const auto picture = fed(texture).picture(4096);
         ASSERT_TRUE(picture) << picture.error().message;
         EXPECT_EQ(picture->channels, channels);
@@ -65,6 +66,15 @@ TEST(Texture, IsExactWhenLossless)
         EXPECT_EQ(*picture, raster);
         EXPECT_EQ(texture.chunks.back().squared_error, 0.0);
     }
+}
+
+TEST(Texture, IsExactWhereThatCostsLittle)
+{
+    const Raster raster = sample_raster(64, 48, 3);
+    EXPECT_EQ(*fed(encoded(raster)).picture(64), raster);
+    EXPECT_NE(
+        *fed(encoded(raster, {.cheap_bits_per_pixel = 0.0, .exact_bytes = 100})).picture(64), raster
+    );
 }
 
 TEST(Texture, ShowsMoreWithEveryChunkAndSaysHowMuch)
@@ -149,8 +159,9 @@ TEST(Texture, MixesNoChannelsOfNormalMaps)
     {
         raster.pixels[i] = 255;
     }
-    const auto texture =
-        encoded(raster, {.psnr = 35.0, .cheap_bits_per_pixel = 0.0, .is_normal_map = true});
+    const auto texture = encoded(
+        raster, {.psnr = 35.0, .cheap_bits_per_pixel = 0.0, .exact_bytes = 0, .is_normal_map = true}
+    );
     const auto decoder = fed(texture);
     EXPECT_FALSE(decoder.header()->color_transform);
     const auto picture = decoder.picture(64);
