@@ -5,7 +5,6 @@
 #include "precompute/chunk_order.h"
 
 #include "core/assert.h"
-#include "precompute/order_path.h"
 #include "precompute/order_pictures.h"
 
 #include <algorithm>
@@ -98,58 +97,6 @@ public:
         VSPLIT_TRY(first);
         error_ = *first;
         order_.steps.push_back({OrderStep::kGeometry, 0, sequences_[0].ends.front(), error_, true});
-        return can_draw_all() ? run_best() : run_steepest();
-    }
-
-private:
-    /// A run that may come next.
-    struct Candidate
-    {
-        std::size_t sequence = 0;
-        double error = 0.0;  ///< After it.
-        bool measured = false;
-        double slope = 0.0;  ///< Fall of the error per byte.
-    };
-
-    /// True for levels and one image when every pair of their states can be drawn.
-    [[nodiscard]] bool can_draw_all() const
-    {
-        return sequences_.size() == 2 && pictures_.is_drawn(0) &&
-               sequences_[0].knots.size() * sequences_[1].knots.size() <= options_.most_pictures;
-    }
-
-    Result<ChunkOrder> run_best()
-    {
-        ErrorTable table;
-        for (std::size_t s = 0; s < 2; ++s)
-        {
-            for (const std::uint32_t knot : sequences_[s].knots)
-            {
-                table.bytes[s].push_back(static_cast<double>(sequences_[s].ends[knot]));
-            }
-        }
-        for (const std::uint32_t level : sequences_[0].knots)
-        {
-            for (const std::uint32_t chunks : sequences_[1].knots)
-            {
-                const auto error = pictures_.error({level, chunks});
-                VSPLIT_TRY(error);
-                table.errors.push_back(*error);
-            }
-        }
-        for (const std::size_t s : best_path(table))
-        {
-            OrderState state = state_;
-            state[s] = sequences_[s].knots[sequences_[s].next];
-            const auto error = pictures_.error(state);
-            VSPLIT_TRY(error);
-            take({s, *error, true, 0.0});
-        }
-        return std::move(order_);
-    }
-
-    Result<ChunkOrder> run_steepest()
-    {
         for (;;)
         {
             const auto best = choose();
@@ -161,6 +108,16 @@ private:
             take(**best);
         }
     }
+
+private:
+    /// A run that may come next.
+    struct Candidate
+    {
+        std::size_t sequence = 0;
+        double error = 0.0;  ///< After it.
+        bool measured = false;
+        double slope = 0.0;  ///< Fall of the error per byte.
+    };
 
     Result<std::optional<Candidate>> choose()
     {

@@ -38,7 +38,7 @@ struct OrderOptions
     std::uint32_t image_side = 512;    ///< Longest side of images that are worth making, pixels.
     std::size_t most_states = 28;      ///< Levels and image states together that are looked at.
     std::size_t most_pictures =
-        225;  ///< States of the whole model that are drawn, in all views each.
+        60;  ///< States of the whole model that are drawn, in all views each.
 };
 
 /// One step of an order: a level, or a chunk of an image.
@@ -62,11 +62,10 @@ struct ChunkOrder
     [[nodiscard]] std::uint32_t level_before(std::uint32_t image, std::uint32_t chunk) const;
 };
 
-/// Interleaves levels and image chunks so that the error of the picture falls soonest: the model is drawn
-/// with both as they would be and compared with the original. With one image the order is the best one
-/// over all bytes, see best_path(); with several every step lowers the error the most for its bytes. Only
-/// a spread of the levels and chunks is drawn, what lies between follows. Images that no base colour
-/// shows are judged by their own error, scaled down, as the drawing does not show them.
+/// Interleaves levels and image chunks so that every step lowers the error of the picture the most for
+/// its bytes: the model is drawn with both as they would be and compared with the original. Only a
+/// spread of the levels and chunks is drawn, what lies between follows. Images that no base colour shows
+/// are judged by their own error, scaled down, as the drawing does not show them.
 /// Errors: those of the callbacks. Cost: at most most_pictures times drawing the views. Deterministic,
 /// on every machine. Thread safe when the callbacks are.
 [[nodiscard]] Result<ChunkOrder> order_chunks(

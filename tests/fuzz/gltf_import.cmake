@@ -5,7 +5,7 @@ set(
     import_sources
     corner_table edge_table glb_materials gltf_accessor gltf_document gltf_draco gltf_materials gltf_nodes
     gltf_primitive group_table half_edge_mesh image_collector image_header material_library mesh_builder
-    model_writers ply_columns ply_header read_gltf read_obj read_ply repair repair_orient repair_split
+    model_writers ply_columns ply_header read_gltf read_obj read_ply repair repair_join repair_orient repair_split
     repair_surface repair_weld text_scan tidy_attributes tiny_gltf validate wedge_mesh write_glb write_obj
     write_ply
 )
