@@ -168,8 +168,11 @@ Result<MeasuredPlan> plan_lossy(
         return MeasuredPlan{
             {header, spaced_ends(options, all, options.layer_ratio, true)}, *curve, true};
     }
-    const double cheap =
-        std::min(cheap_bytes(raster, options), bytes_for_quality(*curve, options.cheap_psnr));
+    const double cheap = std::min(
+        {cheap_bytes(raster, options),
+         bytes_for_quality(*curve, options.cheap_psnr),
+         static_cast<double>(options.cheap_bytes)}
+    );
     const double wanted = bytes_for_quality(*curve, options.psnr + kInterpolationMargin);
     const double last = std::max(wanted, cheap);
     return MeasuredPlan{{header, spaced_ends(options, last, options.layer_ratio, false)}, *curve};

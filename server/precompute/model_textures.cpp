@@ -156,6 +156,7 @@ Result<ModelTextures> encode_textures(
             {.image = static_cast<std::uint32_t>(i),
              .max_size = options.max_size,
              .psnr = options.psnr,
+             .cheap_bytes = images[i].bytes.size(),
              .lossless = options.lossless,
              .is_normal_map = roles[i].normals}
         );
