@@ -14,7 +14,6 @@
 #include "core/result.h"
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -36,14 +35,6 @@ struct AttributeSource
     std::span<const std::vector<std::int32_t>> values;
     std::uint32_t group_count = 1;
 };
-
-/// Codes a number below 2^31: its length in bits, then the bits.
-template <typename Coder>
-[[nodiscard]] std::uint32_t code_count(Coder& coder, std::uint32_t count)
-{
-    const std::uint32_t bits = coder.raw(static_cast<std::uint32_t>(std::bit_width(count)), 5);
-    return coder.raw(count, static_cast<int>(bits));
-}
 
 /// Codes the attributes of a stream, level by level. Not thread safe. Safe on untrusted input.
 class AttributeCoder

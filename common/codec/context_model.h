@@ -234,4 +234,12 @@ inline std::int32_t code_integer(
     return negative ? -result : result;
 }
 
+/// Codes a number below 2^31: its length in bits, then the bits.
+template <typename Coder>
+[[nodiscard]] std::uint32_t code_count(Coder& coder, std::uint32_t count)
+{
+    const std::uint32_t bits = coder.raw(static_cast<std::uint32_t>(std::bit_width(count)), 5);
+    return coder.raw(count, static_cast<int>(bits));
+}
+
 }  // namespace vsplit::codec

@@ -13,7 +13,6 @@
 #include "codec/vertex_placer.h"
 #include "core/result.h"
 
-#include <bit>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -159,14 +158,6 @@ public:
     [[nodiscard]] const std::vector<std::uint32_t>& numbers() const { return placer_.numbers(); }
 
 private:
-    /// A count: its length in bits, then the bits.
-    template <typename Coder>
-    static std::uint32_t code_count(Coder& coder, std::uint32_t count)
-    {
-        const std::uint32_t bits = coder.raw(static_cast<std::uint32_t>(std::bit_width(count)), 5);
-        return coder.raw(count, static_cast<int>(bits));
-    }
-
     void start(BatchState& state)
     {
         state.mesh.start_batch();  // sorts the faces of the last one in
