@@ -121,6 +121,18 @@ struct WedgeValues
     std::span<const std::uint32_t> groups;
 };
 
+/// The numbers of three corners, one corner after another from `first` on.
+CornerNumbers joined(const std::array<CornerNumbers, 3>& corners, std::size_t first)
+{
+    CornerNumbers numbers;
+    for (std::size_t k = 0; k < corners.size(); ++k)
+    {
+        const CornerNumbers& corner = corners[(first + k) % corners.size()];
+        numbers.insert(numbers.end(), corner.begin(), corner.end());
+    }
+    return numbers;
+}
+
 /// All triangles as the numbers of their corners, each in its smallest rotation, sorted: equal exactly when the
 /// same oriented triangles are there, whatever the order of vertices and faces.
 std::vector<CornerNumbers> canonical_triangles(const GridMesh& mesh, const WedgeValues& on)
@@ -142,12 +154,11 @@ std::vector<CornerNumbers> canonical_triangles(const GridMesh& mesh, const Wedge
                 corners[k].insert(corners[k].end(), value.begin(), value.end());
             }
         }
-        const auto first = std::ranges::min_element(corners) - corners.begin();
-        CornerNumbers triangle;
-        for (std::size_t k = 0; k < 3; ++k)
+        // The least corner would not tell the rotation where the grid makes two corners one.
+        CornerNumbers triangle = joined(corners, 0);
+        for (const std::size_t first : {std::size_t{1}, std::size_t{2}})
         {
-            const auto& corner = corners[(static_cast<std::size_t>(first) + k) % 3];
-            triangle.insert(triangle.end(), corner.begin(), corner.end());
+            triangle = std::min(triangle, joined(corners, first));
         }
         triangle.push_back(on.groups.empty() ? 0 : static_cast<std::int32_t>(on.groups[f]));
         triangles.push_back(std::move(triangle));

@@ -23,6 +23,7 @@ struct Arguments
     std::string model;
     std::string stream;
     std::vector<std::size_t> bytes;
+    PictureLodBits most;
     std::string folder;
 };
 
@@ -72,7 +73,7 @@ Result<nlohmann::json> peer_rows(
     const Arguments& arguments, const Original& original, const PictureJudge& judge
 )
 {
-    PictureLodSearch search(original.shown, original.image);
+    PictureLodSearch search(original.shown, original.image, arguments.most);
     auto rows = nlohmann::json::array();
     for (const std::size_t bytes : arguments.bytes)
     {
@@ -146,6 +147,10 @@ int main(int argc, char** argv)
         "--stream", arguments.stream, "Judge the prefixes of this stream instead of peers"
     );
     app.add_option("--bytes", arguments.bytes, "Lengths")->required()->delimiter(',');
+    app.add_option("--position-bits", arguments.most.position, "Most that peers may have")
+        ->check(CLI::Range(8, 20));
+    app.add_option("--uv-bits", arguments.most.tex_coord, "The same")->check(CLI::Range(8, 16));
+    app.add_option("--normal-bits", arguments.most.normal, "The same")->check(CLI::Range(7, 16));
     app.add_option("--pictures", arguments.folder, "Folder for the first view of everything");
     CLI11_PARSE(app, argc, argv);
     const auto done = vsplit::bench::run(arguments);

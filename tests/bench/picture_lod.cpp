@@ -11,7 +11,7 @@
 #include <meshoptimizer.h>
 #include <optional>
 #include <set>
-#include <span>
+#include <vector>
 
 namespace vsplit::bench {
 namespace {
@@ -19,12 +19,23 @@ namespace {
 /// Shares of the bytes that geometry may take.
 constexpr std::array<double, 10> kShares{0.08, 0.15, 0.22, 0.3, 0.38, 0.47, 0.56, 0.66, 0.78, 0.9};
 /// Bits of positions and texture coordinates that are tried together; images that repeat need many.
-constexpr std::array<std::array<int, 2>, 6> kBits{
-    {{9, 8}, {10, 9}, {11, 10}, {12, 11}, {12, 13}, {13, 12}}};
-/// Bits of normals that are tried; 0 leaves them out.
-constexpr std::array<int, 3> kNormalBits{0, 7, 10};
+constexpr std::array<std::array<int, 2>, 7> kBits{
+    {{9, 8}, {10, 9}, {11, 10}, {12, 11}, {12, 13}, {13, 12}, {14, 13}}};
+/// Least bits of normals, where they are not left out.
+constexpr int kFewestNormalBits = 7;
 constexpr double kLadderRatio = 0.93;
 constexpr std::size_t kFinalists = 4;
+
+/// Bits of positions and texture coordinates to try, none above the most.
+std::vector<std::array<int, 2>> bits_to_try(const PictureLodBits& most)
+{
+    std::set<std::array<int, 2>> bits;
+    for (const auto& [position, tex_coord] : kBits)
+    {
+        bits.insert({std::min(position, most.position), std::min(tex_coord, most.tex_coord)});
+    }
+    return {bits.begin(), bits.end()};
+}
 
 /// Simplified surfaces, made when they are asked for.
 class SurfaceLadder
@@ -127,8 +138,9 @@ private:
 class PictureLodSearch::Impl
 {
 public:
-    Impl(const ShownModel& original, const Raster& image)
+    Impl(const ShownModel& original, const Raster& image, const PictureLodBits& most)
         : original_(original),
+          bits_(bits_to_try(most)),
           ladder_(original.surface),
           quick_(original, 3, 256),
           careful_(original, 2, 512)
@@ -137,9 +149,12 @@ public:
         {
             images_.emplace(image);
         }
-        has_normals_ = std::ranges::any_of(original.surface.attributes, [](const auto& attribute) {
-            return attribute.kind == AttributeKind::Normal;
-        });
+        if (std::ranges::any_of(original.surface.attributes, [](const auto& attribute) {
+                return attribute.kind == AttributeKind::Normal;
+            }))
+        {
+            normal_bits_.insert({kFewestNormalBits, most.normal});
+        }
     }
 
     Result<PictureLod> best(std::size_t bytes, const PictureJudge& judge)
@@ -147,9 +162,9 @@ public:
         std::vector<PictureLod> candidates;
         for (const double share : kShares)
         {
-            for (std::size_t bits = 0; bits < kBits.size(); ++bits)
+            for (std::size_t bits = 0; bits < bits_.size(); ++bits)
             {
-                for (const int normals : std::span(kNormalBits).first(has_normals_ ? 3 : 1))
+                for (const int normals : normal_bits_)
                 {
                     VSPLIT_TRY(try_share(bytes, share, {bits, normals}, candidates));
                 }
@@ -186,11 +201,11 @@ private:
 
     Result<std::vector<char>> code(const Key& key) const
     {
-        const auto [position, tex_coord] = kBits[key.second.bits];
+        const auto [position, tex_coord] = bits_[key.second.bits];
         const DracoBits bits{
             .position = position,
             .tex_coord = tex_coord,
-            .normal = std::max(key.second.normal_bits, 7)};
+            .normal = std::max(key.second.normal_bits, kFewestNormalBits)};
         return encode_surface_with_draco(
             ladder_.level(key.first, key.second.normal_bits > 0), bits
         );
@@ -241,8 +256,8 @@ private:
         PictureLod lod;
         lod.geometry_bytes = file->size();
         lod.faces = surface->mesh.triangles.size();
-        lod.position_bits = kBits[key.second.bits][0];
-        lod.tex_coord_bits = kBits[key.second.bits][1];
+        lod.position_bits = bits_[key.second.bits][0];
+        lod.tex_coord_bits = bits_[key.second.bits][1];
         lod.normal_bits = key.second.normal_bits;
         lod.shown.surface = std::move(*surface);
         lod.shown.appearance = original_.appearance;
@@ -289,17 +304,20 @@ private:
     }
 
     const ShownModel& original_;
+    std::vector<std::array<int, 2>> bits_;  ///< Of positions and texture coordinates.
+    std::set<int> normal_bits_{0};          ///< 0: without normals.
     SurfaceLadder ladder_;
     PictureJudge quick_;
     PictureJudge careful_;
     std::optional<JpegLadder> images_;
-    bool has_normals_ = false;
     std::map<Key, std::size_t> bytes_;
     std::set<std::pair<std::size_t, Key>> seen_;
 };
 
-PictureLodSearch::PictureLodSearch(const ShownModel& original, const Raster& image)
-    : impl_(std::make_unique<Impl>(original, image))
+PictureLodSearch::PictureLodSearch(
+    const ShownModel& original, const Raster& image, const PictureLodBits& most
+)
+    : impl_(std::make_unique<Impl>(original, image, most))
 {
 }
 

@@ -24,14 +24,23 @@ struct PictureLod
     ShownModel shown;
 };
 
+/// Most bits that a level of detail may have.
+struct PictureLodBits
+{
+    int position = 14;
+    int tex_coord = 13;
+    int normal = 10;
+};
+
 /// Looks for the best level of detail of a model with at most one image in so many bytes: simplified by
 /// meshopt_simplify (which keeps seams), coded by Draco, with the image as JPEG; the choice of size, bits
 /// and image is by what is seen.
 class PictureLodSearch
 {
 public:
-    /// Prepares. Both must outlive it. `original`: repaired; `image`: without pixels for none.
-    PictureLodSearch(const ShownModel& original, const Raster& image);
+    /// Prepares. Both must outlive it. `original`: repaired; `image`: without pixels for none; `most`: bits, at
+    /// least 7 for normals.
+    PictureLodSearch(const ShownModel& original, const Raster& image, const PictureLodBits& most);
     ~PictureLodSearch();
 
     /// The file with the best PSNR of the final judge. Errors: those of Draco and of the JPEG library;

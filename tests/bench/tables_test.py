@@ -144,11 +144,14 @@ class GoalsTest(unittest.TestCase):
         def case(mine, theirs):
             return {"budget": 20000, "prefix": {"psnr": mine}, "lod": {"psnr": theirs}}
 
-        records = [{"name": "a", "cases": [case(30, 29), case(30, 30), case(30, 31)]},
-                   {"name": "b", "cases": [case(20, 10), case(20, 11)]}]
-        share, = pictures.goal_rows(records)
-        self.assertAlmostEqual(share["value"], 80)
-        self.assertEqual(share["verdict"], "reached")
+        first, second, third = pictures.READINGS
+        records = [{"name": "a", "cases": {first: [case(30, 29), case(30, 30), case(30, 31)],
+                                           second: [case(1, 2)], third: [case(1, 1)]}},
+                   {"name": "b", "cases": {first: [case(20, 10), case(20, 11)],
+                                           second: [case(1, 2)], third: [case(1, 2)]}}]
+        shares = list(pictures.goal_rows(records))
+        self.assertEqual([share["value"] for share in shares], [80, 0, 50])
+        self.assertEqual([share["verdict"] for share in shares], ["reached", "short", "short"])
         self.assertEqual(list(pictures.goal_rows([])), [])
 
 

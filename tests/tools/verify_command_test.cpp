@@ -35,6 +35,25 @@ TEST_F(VerifyCommand, AcceptsTheSourceInAnyOrder)
     EXPECT_THAT(finished.out, HasSubstr("verified: "));
 }
 
+TEST_F(VerifyCommand, AcceptsTrianglesOfWhichTheGridMakesTwoCornersOne)
+{
+    IndexedMesh mesh = bumpy_torus();
+    const auto [a, b, c] = mesh.triangles[0];
+    mesh.positions[b] = mesh.positions[a];
+    mesh.positions[b][0] += 1e-6;
+    ASSERT_TRUE(precompute::write_mesh(path("torus.ply"), mesh));
+    ASSERT_EQ(run({"encode", path("torus.ply"), "-o", path("torus.vsplit")}).status, 0);
+    for (int turn = 0; turn < 3; ++turn)
+    {
+        for (auto& [x, y, z] : mesh.triangles)
+        {
+            std::tie(x, y, z) = std::tuple(y, z, x);
+        }
+        const Finished finished = against(mesh);
+        EXPECT_EQ(finished.status, 0) << finished.err;
+    }
+}
+
 TEST_F(VerifyCommand, TellsEveryDifferenceFromTheSource)
 {
     encode_torus();
