@@ -9,7 +9,7 @@ namespace vsplit::proto {
 
 inline constexpr std::uint32_t kStreamMagic = 0x54505356;  ///< "VSPT", little-endian.
 inline constexpr std::uint8_t kStreamMajor = 0;
-inline constexpr std::uint8_t kStreamMinor = 4;
+inline constexpr std::uint8_t kStreamMinor = 5;
 
 /// Bytes from which the header's length is known: magic, version, and a length of four bytes.
 inline constexpr std::size_t kHeaderProbeBytes = 9;
@@ -57,6 +57,7 @@ inline constexpr std::uint8_t kFirstOptionalChunkKind = 64;
 /// Codecs of attributes.
 inline constexpr std::uint8_t kValuesCodec = 0;   ///< Wedges, groups, values of a level.
 inline constexpr std::uint8_t kNormalsCodec = 1;  ///< Normals of the last level.
+inline constexpr std::uint8_t kLateBitsCodec = 2;  ///< Bits that values of the last level lack.
 
 /// Codecs of the base mesh.
 inline constexpr std::uint8_t kDracoBaseCodec = 0;  ///< A Draco mesh.

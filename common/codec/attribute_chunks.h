@@ -43,8 +43,7 @@ public:
         BitDecoder bits;
         VSPLIT_TRY(bits.start(bytes));
         VSPLIT_TRY(take_memory([&] {
-            done =
-                codec == proto::kNormalsCodec ? decode_normals(bits, at) : decode_values(bits, at);
+            done = codec == proto::kValuesCodec ? decode_values(bits, at) : decode_last(bits, codec, at);
         }));
         VSPLIT_TRY(done);
         return bits.finish();
@@ -88,13 +87,18 @@ private:
         return coder_->code_values(bits, code_count(bits, 0));
     }
 
-    Result<void> decode_normals(BitDecoder& bits, const AttributedLevel& at)
+    /// Decodes what comes behind the values of the last level.
+    Result<void> decode_last(BitDecoder& bits, std::uint8_t codec, const AttributedLevel& at)
     {
         if (!at.last || coder_->in_level() || level_ != at.level + 1ULL)
         {
-            return fail(ErrorCode::BadChunk, "normals come before the last level is complete");
+            return fail(
+                ErrorCode::BadChunk, "normals or bits come before the last level is complete"
+            );
         }
-        return coder_->code_normals(bits, code_count(bits, 0), {});
+        const std::uint32_t count = code_count(bits, 0);
+        return codec == proto::kNormalsCodec ? coder_->code_normals(bits, count, {})
+                                             : coder_->code_late_bits(bits, count);
     }
 
     std::unique_ptr<AttributeCoder> coder_;  ///< Once the first chunk came.

@@ -10,6 +10,7 @@
 #include "codec/normal_coder.h"
 #include "codec/stream_info.h"
 #include "codec/value_coder.h"
+#include "codec/value_precision.h"
 #include "codec/wedge_coder.h"
 #include "core/result.h"
 
@@ -33,6 +34,7 @@ struct AttributeSource
     std::vector<std::uint32_t> groups;  ///< By slot; empty: all 0.
     /// By attribute and wedge of the source the coded numbers.
     std::span<const std::vector<std::int32_t>> values;
+    std::vector<std::uint8_t> lacks;  ///< By attribute the low bits that the level does without.
     std::uint32_t group_count = 1;
 };
 
@@ -45,6 +47,7 @@ public:
         : attributes_(attributes), counts_(counts)
     {
         state_.shown.values.resize(attributes.size());
+        state_.lacks.resize(attributes.size());
         for (const AttributeInfo& info : attributes)
         {
             state_.value_models.emplace_back(
@@ -117,6 +120,12 @@ public:
             }
             code_groups(coder, mesh_, state_, kept, groups_, wanted);
         }
+        std::span<const std::uint8_t> lacks;
+        if constexpr (Coder::kEncodes)
+        {
+            lacks = source->lacks;
+        }
+        VSPLIT_TRY(code_precision(coder, attributes_, state_, known, levels_ == 0, lacks, wanted_));
         values_ = std::make_unique<ValueCoder>(attributes_, mesh_, state_, known);
         if constexpr (Coder::kEncodes)
         {
@@ -139,6 +148,36 @@ public:
         {
             values_.reset();
             ++levels_;
+        }
+        return {};
+    }
+
+    /// Wedges whose numbers lack bits. Precondition: not in_level().
+    [[nodiscard]] std::uint32_t late_left() const
+    {
+        return late_bits() == 0 ? 0 : wedge_count() - completed_;
+    }
+
+    /// Bits that the numbers of one of them lack.
+    [[nodiscard]] std::uint32_t late_bits() const { return lacking_bits(attributes_, state_); }
+
+    /// Codes the bits that `count` wedges lack, in their order. Precondition: has_level(), not in_level(),
+    /// the level is the last one. Error: BadChunk.
+    template <typename Coder>
+    [[nodiscard]] Result<void> code_late_bits(Coder& coder, std::uint32_t count)
+    {
+        if (count > late_left())
+        {
+            return fail(ErrorCode::BadChunk, "a chunk holds bits that no value lacks");
+        }
+        for (; count > 0; --count, ++completed_)
+        {
+            complete_wedge(coder, attributes_, state_, completed_, wanted_);
+        }
+        if (completed_ == wedge_count())
+        {
+            std::ranges::fill(state_.lacks, std::uint8_t{0});
+            completed_ = 0;
         }
         return {};
     }
@@ -203,7 +242,10 @@ public:
     [[nodiscard]] bool normals_complete() const { return !normals_; }
 
     /// True when nothing is begun that is not complete.
-    [[nodiscard]] bool settled() const { return !in_level() && normals_complete(); }
+    [[nodiscard]] bool settled() const
+    {
+        return !in_level() && normals_complete() && completed_ == 0;
+    }
 
     /// Bytes that the first normals of the attribute begun take in a style. Precondition: next_normals().
     [[nodiscard]] Result<std::size_t> try_normals(std::uint32_t count, const NormalStyle& style)
@@ -220,6 +262,11 @@ public:
     [[nodiscard]] std::uint32_t normals_left() const { return normals_->left(); }
 
 private:
+    [[nodiscard]] std::uint32_t wedge_count() const
+    {
+        return static_cast<std::uint32_t>(state_.shown.wedge_vertices.size());
+    }
+
     /// Puts what is wanted in the order of the stream's wedges.
     void collect_wanted(const AttributeSource& source)
     {
@@ -247,6 +294,7 @@ private:
     bool begins_normals_ = false;
     std::size_t normal_attribute_ = 0;
     std::vector<std::vector<std::int32_t>> wanted_;  ///< Encoder only: by attribute and wedge.
+    std::uint32_t completed_ = 0;  ///< Wedges that lack no bits any more, while others do.
     std::uint32_t levels_ = 0;
     std::uint32_t groups_ = 1;
     std::uint32_t faces_ = 0;  ///< For which memory is taken.

@@ -95,6 +95,7 @@ struct AttributeState
     std::vector<std::uint32_t> next_wedge;
     WedgeModel wedge_model;
     std::vector<ValueModel> value_models;  ///< By attribute.
+    std::vector<std::uint8_t> lacks;       ///< By attribute the low bits that its numbers lack.
 };
 
 }  // namespace vsplit::codec

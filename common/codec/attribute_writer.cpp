@@ -2,6 +2,7 @@
 
 #include "codec/attribute_coder.h"
 #include "codec/bit_counter.h"
+#include "codec/coarse_values.h"
 #include "codec/stream_decoder.h"
 #include "core/byte_writer.h"
 
@@ -12,9 +13,6 @@
 
 namespace vsplit::codec {
 namespace {
-
-/// Length at which a chunk is closed: one more step keeps it within proto::kTargetChunkBytes.
-constexpr std::size_t kFullChunk = 48U * 1024U;
 
 /// Values after which the length is looked at.
 constexpr std::uint32_t kStep = 512;
@@ -154,7 +152,8 @@ public:
           coder_(
               plan.attributes,
               {count_wedges(plan.wedges), static_cast<std::uint32_t>(plan.mesh->positions.size())}
-          )
+          ),
+          coarse_(plan)
     {
     }
 
@@ -180,6 +179,7 @@ public:
             chunk += step->kind == StepKind::Chunk || step->kind == StepKind::SkippedChunk ? 1 : 0;
         }
         VSPLIT_TRY(code_all_normals(chunk - 1));
+        VSPLIT_TRY(code_late_bits(chunk - 1));
         return std::move(chunks_);
     }
 
@@ -239,6 +239,7 @@ private:
         LevelMesh mesh = decoder_.level_mesh();
         VSPLIT_TRY(find_labels(mesh, faces_[level]));
         faces_[level] = {};
+        source_.lacks = coarse_.lacking(decoder_.shift(), coder_.shown().wedge_vertices.size());
         MeasuredEncoder body;
         VSPLIT_TRY(coder_.begin_level(body, std::move(mesh), replaced, &source_));
         BitEncoder head;
@@ -289,6 +290,21 @@ private:
         return {};
     }
 
+    /// Ends with the bits that values still lack.
+    Result<void> code_late_bits(std::size_t chunk)
+    {
+        while (coder_.late_left() > 0)
+        {
+            const auto fitting = static_cast<std::uint32_t>(kFullChunk * 8 / coder_.late_bits());
+            const std::uint32_t count = std::min(coder_.late_left(), fitting);
+            BitEncoder bits;
+            static_cast<void>(code_count(bits, count));
+            VSPLIT_TRY(coder_.code_late_bits(bits, count));
+            add_chunk(chunk, proto::kLateBitsCodec, bits);
+        }
+        return {};
+    }
+
     /// Tries every style on the first normals.
     Result<void> choose_style(NormalStyle& style)
     {
@@ -323,6 +339,7 @@ private:
     StreamDecoder decoder_;
     AttributeCoder coder_;
     AttributeSource source_;
+    CoarseValues coarse_;
     std::vector<std::vector<LevelFace>> faces_;  ///< By level, sorted.
     std::vector<ExtraChunk> chunks_;
 };

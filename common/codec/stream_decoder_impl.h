@@ -183,7 +183,7 @@ private:
         {
             return decode_stitches(bytes);
         }
-        if (chunk.kind == proto::ChunkKind::Attributes && chunk.codec <= proto::kNormalsCodec &&
+        if (chunk.kind == proto::ChunkKind::Attributes && chunk.codec <= proto::kLateBitsCodec &&
             limits_.attributes)
         {
             return decode_attributes(chunk, bytes, step);

@@ -84,6 +84,9 @@ struct StreamPlan
     /// By triangle of `mesh` the wedges at its corners, 0 .. W - 1; empty when nothing lies on it.
     std::span<const Triangle> wedges;
     std::span<const std::uint32_t> groups;  ///< By triangle of `mesh`; empty: all in 0.
+    /// Bits of texture coordinates that come behind everything else; those of coarser levels then lack as
+    /// many as their positions let nobody see. 0: all of them come at once.
+    int late_bits = 0;
     bool grow_last_level = true;            ///< False: splits to the end.
     bool cut_levels = true;                 ///< False: one chunk a level, however long.
 };

@@ -7,6 +7,7 @@
 #include "codec/float_log.h"
 #include "codec/level_mesh.h"
 #include "codec/value_fit.h"
+#include "codec/value_precision.h"
 #include "codec/wedge_neighbours.h"
 #include "core/result.h"
 
@@ -137,8 +138,10 @@ private:
         const auto value = std::span(values).subspan(wedge * numbers, numbers);
         if constexpr (Coder::kEncodes)
         {
-            std::ranges::copy(
-                std::span(wanted[attribute]).subspan(wedge * numbers, numbers), value.begin()
+            std::ranges::transform(
+                std::span(wanted[attribute]).subspan(wedge * numbers, numbers),
+                value.begin(),
+                [&](std::int32_t number) { return middle_of(number, state_.lacks[attribute]); }
             );
         }
         if (twin_ != kNoWedge)
@@ -165,12 +168,19 @@ private:
         {
             expected[k] = expect(attribute, value.size(), k);
         }
+        const int lacks = state_.lacks[attribute];
+        const auto step = static_cast<double>(1 << lacks);
+        const auto middle = static_cast<double>(middle_of(0, lacks));
         double before = 0.0;
         for (std::size_t k = 0; k < value.size(); ++k)
         {
             const NumberRange range = number_range(info, k);
+            const std::int32_t low = range.low >> lacks;
+            const std::int32_t high = range.high >> lacks;
             const double likely = std::clamp(
-                expected[k].value, static_cast<double>(range.low), static_cast<double>(range.high)
+                (expected[k].value - middle) / step,
+                static_cast<double>(low),
+                static_cast<double>(high)
             );
             const double rounded = std::floor(likely + 0.5);
             const double rest = likely - rounded;
@@ -180,12 +190,14 @@ private:
             auto& model = state_.value_models[attribute]
                               .residual[k][residual_context(kOwn * size + kBefore * before)];
             const auto base = static_cast<std::int32_t>(rounded);
-            const std::int32_t residual = code_integer(coder, model, value[k] - base, sign);
-            value[k] = base + residual;
-            if (value[k] < range.low || value[k] > range.high)
+            const std::int32_t residual =
+                code_integer(coder, model, (value[k] >> lacks) - base, sign);
+            const std::int32_t cell = base + residual;
+            if (cell < low || cell > high)
             {
                 return fail(ErrorCode::BadChunk, "a value of an attribute is out of its range");
             }
+            value[k] = middle_of(cell << lacks, lacks);
             before = static_cast<double>(std::abs(residual));
             sizes_[attribute][(wedge - first_new_) * value.size() + k] =
                 static_cast<float>(1.0 + before);
@@ -210,8 +222,8 @@ private:
         return expected;
     }
 
-    /// How large the residual of number `k` of `numbers` is expected to be: as those of the neighbours, and
-    /// as the fit is off.
+    /// How large the residual of number `k` of `numbers` is expected to be, in steps of the level's precision: as
+    /// those of the neighbours, and as the fit is off.
     [[nodiscard]] double expected_size(
         std::size_t attribute,
         std::uint32_t wedge,
@@ -220,9 +232,10 @@ private:
         const ExpectedNumber& expected
     ) const
     {
+        const auto step = static_cast<double>(1 << state_.lacks[attribute]);
         if (fit_.size() == 0)
         {
-            return static_cast<double>(1 << attributes_[attribute].bits);
+            return static_cast<double>(1 << attributes_[attribute].bits) / step;
         }
         double sum = 0.0;
         double count = 0.0;
@@ -238,17 +251,18 @@ private:
                 count = count + (seen > 0.0F ? 1.0 : 0.0);
             }
         }
-        const double steep = std::sqrt(expected.slope_squared * fit_.reach_squared());
+        const double steep = std::sqrt(expected.slope_squared * fit_.reach_squared()) / step;
+        const double error = std::sqrt(expected.error_squared) / step;
         const bool fits = fit_.size() > 3;
         double size = 0.2 * steep;
         if (count > 0.0)
         {
             const double seen = sum / count;
-            size = fits ? (2.0 * seen + std::sqrt(expected.error_squared)) / 3.0 : seen;
+            size = fits ? (2.0 * seen + error) / 3.0 : seen;
         }
         else if (fits)
         {
-            size = std::sqrt(expected.error_squared);
+            size = error;
         }
         if (fit_.size() < 3)
         {

@@ -32,7 +32,13 @@ double decibels(double squared_error)
 /// Bytes up to which an image may become better than it has to.
 double cheap_bytes(const Raster& raster, const TextureOptions& options)
 {
-    return options.cheap_bits_per_pixel / 8.0 * raster.width * raster.height;
+    const double pixels = double{1} * raster.width * raster.height;
+    const double small = double{1} * options.small_bytes;
+    const double bytes = std::max(
+        options.cheap_bits_per_pixel / 8.0 * pixels,
+        std::min(options.small_bits_per_pixel / 8.0 * pixels, small)
+    );
+    return std::min(bytes, std::max(static_cast<double>(options.cheap_bytes), small));
 }
 
 TextureHeader header_for(const Raster& raster, const TextureOptions& options)
@@ -168,11 +174,8 @@ Result<MeasuredPlan> plan_lossy(
         return MeasuredPlan{
             {header, spaced_ends(options, all, options.layer_ratio, true)}, *curve, true};
     }
-    const double cheap = std::min(
-        {cheap_bytes(raster, options),
-         bytes_for_quality(*curve, options.cheap_psnr),
-         static_cast<double>(options.cheap_bytes)}
-    );
+    const double cheap =
+        std::min(cheap_bytes(raster, options), bytes_for_quality(*curve, options.cheap_psnr));
     const double wanted = bytes_for_quality(*curve, options.psnr + kInterpolationMargin);
     const double last = std::max(wanted, cheap);
     return MeasuredPlan{{header, spaced_ends(options, last, options.layer_ratio, false)}, *curve};

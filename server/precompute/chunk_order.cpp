@@ -13,7 +13,10 @@
 namespace vsplit::precompute {
 namespace {
 
-/// Levels, or the chunks of an image: states 0 .. size, each longer than the one before.
+/// Runs of one sequence that are looked at before one of them is taken.
+constexpr std::size_t kLookAhead = 4;
+
+/// Stages of the shape, or the chunks of an image: states 0 .. size, each longer than the one before.
 struct Sequence
 {
     std::vector<std::uint64_t> ends;  ///< By state the bytes up to it.
@@ -57,7 +60,7 @@ std::vector<Sequence> make_sequences(const OrderSource& source, const OrderOptio
 {
     std::vector<Sequence> sequences(1 + source.texture_bytes.size());
     std::uint64_t end = 0;
-    for (const std::uint64_t bytes : source.level_bytes)
+    for (const std::uint64_t bytes : source.stage_bytes)
     {
         sequences[0].ends.push_back(end += bytes);
     }
@@ -69,7 +72,7 @@ std::vector<Sequence> make_sequences(const OrderSource& source, const OrderOptio
             sequences[i + 1].ends.push_back(end += bytes);
         }
     }
-    // Half of the states for the levels, the other for the images.
+    // Half of the states for the shape, the other for the images.
     const std::size_t images = std::max<std::size_t>(source.texture_bytes.size(), 1);
     for (std::size_t s = 0; s < sequences.size(); ++s)
     {
@@ -110,13 +113,19 @@ public:
     }
 
 private:
-    /// A run that may come next.
+    /// What is known after a run of steps.
+    struct Measured
+    {
+        std::uint32_t state = 0;  ///< Of the sequence, after it.
+        double error = 0.0;
+    };
+
+    /// Runs of one sequence that may come next.
     struct Candidate
     {
         std::size_t sequence = 0;
-        double error = 0.0;  ///< After it.
-        bool measured = false;
-        double slope = 0.0;  ///< Fall of the error per byte.
+        double slope = 0.0;           ///< Fall of the error per byte over all of them.
+        std::vector<Measured> runs;   ///< Empty: one run that was not measured.
     };
 
     Result<std::optional<Candidate>> choose()
@@ -128,26 +137,27 @@ private:
             {
                 continue;
             }
-            const auto candidate = consider(s);
+            auto candidate = consider(s);
             VSPLIT_TRY(candidate);
             if (!best || candidate->slope > best->slope)
             {
-                best = *candidate;
+                best = std::move(*candidate);
             }
         }
         return best;
     }
 
-    /// What the next run of a sequence brings; where it brings nothing, together with the one after it,
-    /// as a preview that is not yet better than nothing would keep back all that follows.
+    /// The next runs of a sequence up to where the error falls less for their bytes than before: a preview that is not
+    /// yet better than nothing, or a level that needs the next one to shine, would keep back all that follows.
     Result<Candidate> consider(std::size_t s)
     {
         const Sequence& sequence = sequences_[s];
-        Candidate result{s, error_, false, 0.0};
-        for (std::size_t ahead = 0; ahead < 2; ++ahead)
+        Candidate best{s, 0.0, {}};
+        std::vector<Measured> runs;
+        for (std::size_t ahead = 0; ahead < kLookAhead; ++ahead)
         {
             const std::size_t knot = sequence.next + ahead;
-            if (knot == sequence.knots.size() || result.slope > 0.0)
+            if (knot == sequence.knots.size())
             {
                 break;
             }
@@ -159,20 +169,25 @@ private:
             }
             const auto error = pictures_.error(state);
             VSPLIT_TRY(error);
-            if (ahead == 0)
-            {
-                result.error = *error;
-                result.measured = true;
-            }
+            runs.push_back({state[s], *error});
             const std::uint64_t bytes = sequence.ends[state[s]] - sequence.ends[state_[s]];
-            result.slope =
+            const double slope =
                 (error_ - *error) / static_cast<double>(std::max<std::uint64_t>(bytes, 1));
+            if (best.runs.empty() || slope > best.slope)
+            {
+                best.slope = slope;
+                best.runs = runs;
+            }
+            else if (best.slope > 0.0)
+            {
+                break;
+            }
         }
-        if (!result.measured)
+        if (best.runs.empty())
         {
-            result.slope = guess_slope(s);
+            best.slope = guess_slope(s);
         }
-        return result;
+        return best;
     }
 
     /// Without a picture: the error falls as one over the bytes.
@@ -184,25 +199,36 @@ private:
 
     void take(const Candidate& chosen)
     {
-        Sequence& sequence = sequences_[chosen.sequence];
-        const std::uint32_t from = state_[chosen.sequence];
-        const std::uint32_t to = sequence.knots[sequence.next];
-        const auto all = static_cast<double>(sequence.ends[to] - sequence.ends[from]);
-        for (std::uint32_t i = from + 1; i <= to; ++i)
+        if (chosen.runs.empty())
+        {
+            const Sequence& sequence = sequences_[chosen.sequence];
+            take_run(chosen.sequence, {sequence.knots[sequence.next], error_}, false);
+        }
+        for (const Measured& run : chosen.runs)
+        {
+            take_run(chosen.sequence, run, true);
+        }
+    }
+
+    void take_run(std::size_t s, const Measured& run, bool measured)
+    {
+        Sequence& sequence = sequences_[s];
+        const std::uint32_t from = state_[s];
+        const auto all = static_cast<double>(sequence.ends[run.state] - sequence.ends[from]);
+        for (std::uint32_t i = from + 1; i <= run.state; ++i)
         {
             OrderStep step;
-            const bool geometry = chosen.sequence == 0;
-            step.image = static_cast<std::int32_t>(chosen.sequence) - 1;
-            step.index = geometry ? i : i - 1;
+            step.image = static_cast<std::int32_t>(s) - 1;
+            step.index = s == 0 ? i : i - 1;
             step.bytes = sequence.ends[i] - sequence.ends[i - 1];
             const auto done = static_cast<double>(sequence.ends[i] - sequence.ends[from]);
             const double share = all > 0.0 ? done / all : 1.0;
-            step.error = error_ + share * (chosen.error - error_);
-            step.measured = i == to && chosen.measured;
+            step.error = error_ + share * (run.error - error_);
+            step.measured = i == run.state && measured;
             order_.steps.push_back(step);
         }
-        state_[chosen.sequence] = to;
-        error_ = chosen.error;
+        state_[s] = run.state;
+        error_ = run.error;
         ++sequence.next;
     }
 
@@ -216,28 +242,28 @@ private:
 
 }  // namespace
 
-std::uint32_t ChunkOrder::level_before(std::uint32_t image, std::uint32_t chunk) const
+std::uint32_t ChunkOrder::stage_before(std::uint32_t image, std::uint32_t chunk) const
 {
-    std::uint32_t level = 0;
+    std::uint32_t stage = 0;
     for (const OrderStep& step : steps)
     {
         if (step.image == OrderStep::kGeometry)
         {
-            level = step.index;
+            stage = step.index;
         }
         else if (static_cast<std::uint32_t>(step.image) == image && step.index == chunk)
         {
-            return level;
+            return stage;
         }
     }
     VSPLIT_ASSERT(false);
-    return level;
+    return stage;
 }
 
 Result<ChunkOrder> order_chunks(const OrderSource& source, const OrderOptions& options)
 {
     VSPLIT_ASSERT(source.original != nullptr && source.appearance != nullptr);
-    VSPLIT_ASSERT(!source.level_bytes.empty());
+    VSPLIT_ASSERT(!source.stage_bytes.empty());
     VSPLIT_ASSERT(source.original_images.size() >= source.texture_bytes.size());
     return Orderer(source, options).run();
 }

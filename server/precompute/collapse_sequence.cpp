@@ -64,6 +64,11 @@ public:
     Sequence run(const ProgressSink& progress, const StepSink& take_step)
     {
         const std::size_t base = next_goal(options_, parts_, 0, vertex_count_);
+        if (late_bits(options_) > 0)
+        {
+            add_step({{{}}, {}}, true, take_step);
+            sequence_.seams.emplace_back();
+        }
         bool choosy = true;
         while (builder_.vertex_count() > base)
         {
@@ -114,7 +119,8 @@ private:
 
     void add_step(LevelStep step, bool starts, const StepSink& take_step)
     {
-        const bool is_level = !step.parts.empty() || step.batches.front().size() > kSmallestLevel;
+        const bool is_level = !step.parts.empty() || step.batches.front().empty() ||
+                              step.batches.front().size() > kSmallestLevel;
         take_step(step, is_level && !joins_more_);
         sequence_.levels.push_back(std::move(step));
         sequence_.starts.push_back(starts ? 1 : 0);

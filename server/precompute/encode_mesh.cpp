@@ -7,6 +7,7 @@
 #include "precompute/concurrent_meter.h"
 #include "precompute/cut_copies.h"
 #include "precompute/half_edge_mesh.h"
+#include "precompute/level_schedule.h"
 #include "precompute/mesh_order.h"
 #include "precompute/validate.h"
 
@@ -183,6 +184,7 @@ Result<EncodedMesh> encode_source(
          .mesh = &source.quantised,
          .locked = source.locked,
          .bits = options.position_bits,
+         .late_bits = late_bits(options),
          .components = parts.components()},
         source.importance,
         options.threads
@@ -205,6 +207,7 @@ Result<EncodedMesh> encode_source(
     auto plan = make_plan(sequence, source, views);
     plan.training = options.training;
     plan.grow_last_level = options.grow_last_level && options.level_vertices.empty();
+    plan.late_bits = late_bits(options);
     plan.cut_levels = options.cut_levels;
     auto file = codec::encode_stream(plan, stage_progress(progress, "code"));
     VSPLIT_TRY(file);

@@ -32,6 +32,10 @@ struct EncodeOptions
     codec::LearnedModel* training = nullptr;
     /// False: only splits, no last level that is grown where that is smaller.
     bool grow_last_level = true;
+    /// Bits of positions and texture coordinates that come last, in a level that adds no vertex and behind it, so
+    /// that other things may come before them: they are a good part of the bytes and hardly seen. Only without
+    /// a last level that is grown.
+    int late_bits = 0;
     bool cut_levels = true;  ///< False: one chunk a level, however long; to see what the cuts cost.
     unsigned threads = 1;    ///< Worker threads, at least 1; the bytes do not depend on it.
 };
@@ -74,7 +78,7 @@ struct EncodedMesh
 /// consistently oriented (what repair_mesh() returns); `stitches`: per vertex the representative of
 /// the source vertex it was cut from (as RepairedMesh::stitches), or empty; vertices that share one
 /// are never removed, so that no level cracks.
-/// Precondition: options.importance has one number a vertex, or none.
+/// Preconditions: options.importance has one number a vertex, or none; options.late_bits is 0 .. 4.
 /// Errors: EmptyMesh, InputTooLarge, BadIndex and UnsupportedInput (not such a mesh; see
 /// check_manifold()), Internal (the result failed its own check).
 /// Cost: about 12 microseconds and 400 bytes a vertex, with several threads 550 bytes. Deterministic: the same input and options

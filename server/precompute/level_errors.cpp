@@ -119,7 +119,7 @@ LevelMeter::LevelMeter(
 
 void LevelMeter::add(const LevelStep& level)
 {
-    const int shift = shifts_.back();
+    const int shift = std::max(shifts_.back(), source_.late_bits);
     place();
     coarsen(tracker_, level);
     const std::vector<std::uint32_t> removed = removed_vertices(level);

@@ -20,6 +20,7 @@ struct PlacementSource
     const ClosestPointTree* tree = nullptr;  ///< Of both.
     std::span<const std::uint8_t> locked;    ///< V flags: vertices that stay at home; or empty.
     int bits = 12;                           ///< Position bits.
+    int late_bits = 0;                       ///< Bits that only the last level has.
     /// By vertex the number of its component, when levels may lack some; or empty.
     std::span<const std::uint32_t> components;
 };

@@ -64,6 +64,11 @@ std::size_t next_stop(const EncodeOptions& options, std::size_t vertices, std::s
     return stop;
 }
 
+int late_bits(const EncodeOptions& options)
+{
+    return options.grow_last_level && options.level_vertices.empty() ? 0 : options.late_bits;
+}
+
 LevelStyle style_for(Metric metric, std::size_t vertices, std::size_t all)
 {
     if (is_made_for_coding(metric) &&

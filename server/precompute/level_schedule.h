@@ -14,6 +14,9 @@ namespace vsplit::precompute {
     const EncodeOptions& options, std::size_t vertices, std::size_t all
 );
 
+/// Bits of positions that the options leave to a last level of their own.
+[[nodiscard]] int late_bits(const EncodeOptions& options);
+
 /// How to choose the collapses of the next level of a mesh that has `vertices` left of `all`: for small
 /// files while there are many, by price alone below.
 [[nodiscard]] LevelStyle style_for(Metric metric, std::size_t vertices, std::size_t all);

@@ -43,18 +43,47 @@ std::vector<ImageRole> image_roles(const Appearance& appearance)
     return roles;
 }
 
-/// Decodes a stream up to and with the attributes of a level.
-Result<Surface> surface_at(
-    std::span<const std::byte> file, const codec::StreamInfo& info, std::uint32_t level
-)
+/// A prefix of a stream of shape and attributes at whose end a client shows something better than before.
+struct Stage
 {
+    std::size_t chunk = 0;    ///< The last one of the prefix.
+    std::uint64_t bytes = 0;  ///< Of the prefix.
+};
+
+/// Finds the stages of a stream: one a level, then one for all normals of an attribute and what else makes the
+/// last level better without being a level. The last stage is the whole file.
+Result<std::vector<Stage>> find_stages(std::span<const std::byte> file)
+{
+    std::vector<Stage> stages;
     codec::StreamDecoder decoder;
-    auto rest = file.first(info.levels[level].cumulative_bytes);
-    while (!rest.empty())
+    std::size_t chunk = 0;
+    for (auto rest = file; !decoder.complete();)
     {
         const auto taken = decoder.feed(rest);
         VSPLIT_TRY(taken);
         rest = rest.subspan(*taken);
+        const auto step = decoder.step();
+        VSPLIT_TRY(step);
+        const bool plain = step->level_complete && decoder.info()->attributes.empty();
+        if (plain || step->attributes_complete)
+        {
+            stages.push_back({chunk, decoder.decoded_bytes()});
+        }
+        chunk += step->chunk != nullptr ? 1 : 0;
+    }
+    stages.back() = {chunk - 1, decoder.decoded_bytes()};
+    return stages;
+}
+
+/// Decodes a prefix of a stream.
+Result<Surface> surface_after(std::span<const std::byte> prefix)
+{
+    codec::StreamDecoder decoder;
+    while (!prefix.empty())
+    {
+        const auto taken = decoder.feed(prefix);
+        VSPLIT_TRY(taken);
+        prefix = prefix.subspan(*taken);
         VSPLIT_TRY(decoder.step());
     }
     return picture::decoded_surface(decoder);
@@ -63,7 +92,7 @@ Result<Surface> surface_at(
 /// The image that the first chunks of a coded one show.
 Result<Raster> raster_after(const image::EncodedTexture& texture, std::uint32_t chunks)
 {
-    constexpr std::uint32_t kSide = 512;
+    constexpr std::uint32_t kSide = OrderOptions().image_side;
     image::TextureDecoder decoder;
     for (const image::TextureChunk& chunk : std::span(texture.chunks).first(chunks))
     {
@@ -72,28 +101,9 @@ Result<Raster> raster_after(const image::EncodedTexture& texture, std::uint32_t 
     return decoder.picture(kSide);
 }
 
-/// By level the last chunk that belongs to it.
-std::vector<std::size_t> last_chunks(const codec::StreamInfo& info)
-{
-    std::vector<std::size_t> last;
-    for (std::size_t i = 0; i < info.chunks.size(); ++i)
-    {
-        const codec::ChunkInfo& chunk = info.chunks[i];
-        if (codec::is_optional(chunk.kind))
-        {
-            last.back() = i;
-        }
-        else if (chunk.ends_level)
-        {
-            last.push_back(i);
-        }
-    }
-    return last;
-}
-
 Result<ChunkOrder> find_order(
     std::span<const std::byte> file,
-    const codec::StreamInfo& info,
+    std::span<const Stage> stages,
     const Surface& original,
     const Appearance& appearance,
     const ModelTextures& textures
@@ -103,9 +113,11 @@ Result<ChunkOrder> find_order(
     source.original = &original;
     source.appearance = &appearance;
     source.original_images = textures.rasters;
-    for (const codec::LevelInfo& level : info.levels)
+    std::uint64_t before = 0;
+    for (const Stage& stage : stages)
     {
-        source.level_bytes.push_back(level.chunk_bytes);
+        source.stage_bytes.push_back(stage.bytes - before);
+        before = stage.bytes;
     }
     for (const image::EncodedTexture& texture : textures.encoded)
     {
@@ -115,7 +127,9 @@ Result<ChunkOrder> find_order(
             bytes.push_back(chunk.payload.size() + proto::kChunkChecksumBytes);
         }
     }
-    source.level = [&](std::uint32_t level) { return surface_at(file, info, level); };
+    source.stage = [&](std::uint32_t stage) {
+        return surface_after(file.first(stages[stage].bytes));
+    };
     source.image = [&](std::uint32_t image, std::uint32_t chunks) {
         return raster_after(textures.encoded[image], chunks);
     };
@@ -156,7 +170,8 @@ Result<ModelTextures> encode_textures(
             {.image = static_cast<std::uint32_t>(i),
              .max_size = options.max_size,
              .psnr = options.psnr,
-             .cheap_bytes = images[i].bytes.size(),
+             // A little more than the source's own file: what stops just there is a little worse than it.
+             .cheap_bytes = images[i].bytes.size() * 9 / 8,
              .lossless = options.lossless,
              .is_normal_map = roles[i].normals}
         );
@@ -194,25 +209,26 @@ Result<std::vector<std::byte>> insert_appearance(
     }
     const auto info = codec::parse_stream_info(file);
     VSPLIT_TRY(info);
-    const auto order = find_order(file, *info, original, appearance, textures);
+    const auto stages = find_stages(file);
+    VSPLIT_TRY(stages);
+    const auto order = find_order(file, *stages, original, appearance, textures);
     VSPLIT_TRY(order);
-    const auto last = last_chunks(*info);
     std::vector<std::uint32_t> tags(info->chunks.size());
     std::ranges::transform(info->chunks, tags.begin(), &codec::ChunkInfo::tag);
-    std::uint32_t level = 0;
+    std::size_t last = 0;
     for (const OrderStep& step : order->steps)
     {
         if (step.image == OrderStep::kGeometry)
         {
-            level = step.index;
-            std::uint32_t& tag = tags[last[level]];
+            last = (*stages)[step.index].chunk;
+            std::uint32_t& tag = tags[last];
             tag = codec::with_picture_quality(tag, step.error);
             continue;
         }
         const auto& chunk =
             textures.encoded[static_cast<std::size_t>(step.image)].chunks[step.index];
         extra.push_back(
-            {.after = last[level],
+            {.after = last,
              .kind = proto::ChunkKind::Texture,
              .tag = codec::with_picture_quality(chunk.tag, step.error),
              .bytes = chunk.payload}

@@ -149,22 +149,22 @@ Result<double> OrderPictures::own_error(std::uint32_t image, std::uint32_t chunk
     return own_errors_[{image, chunks}] = image_error(*shown, source_.original_images[image]);
 }
 
-Result<const Surface*> OrderPictures::surface(std::uint32_t level)
+Result<const Surface*> OrderPictures::surface(std::uint32_t stage)
 {
-    const auto known = surfaces_.find(level);
+    const auto known = surfaces_.find(stage);
     if (known != surfaces_.end())
     {
         return &known->second;
     }
-    auto made = source_.level(level);
+    auto made = source_.stage(stage);
     VSPLIT_TRY(made);
-    // An order only goes up: coarser levels are hardly asked for again.
-    constexpr std::size_t kKept = 3;
+    // An order only goes up: earlier stages are hardly asked for again.
+    constexpr std::size_t kKept = 6;
     if (surfaces_.size() >= kKept)
     {
         surfaces_.erase(surfaces_.begin());
     }
-    return &(surfaces_[level] = std::move(*made));
+    return &(surfaces_[stage] = std::move(*made));
 }
 
 Result<picture::Texture> OrderPictures::texture(std::uint32_t image, std::uint32_t chunks)

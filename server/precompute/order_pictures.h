@@ -10,7 +10,7 @@
 
 namespace vsplit::precompute {
 
-/// How far each sequence has come: the level, then by image the number of its chunks.
+/// How far each sequence has come: the stage of the shape, then by image the number of its chunks.
 using OrderState = std::vector<std::uint32_t>;
 
 /// Measures the image error of states of a model. Not thread safe.
@@ -37,7 +37,7 @@ private:
     [[nodiscard]] OrderState drawn_part(OrderState state) const;
     [[nodiscard]] Result<double> drawn_error(const OrderState& state);
     [[nodiscard]] Result<double> own_error(std::uint32_t image, std::uint32_t chunks);
-    [[nodiscard]] Result<const Surface*> surface(std::uint32_t level);
+    [[nodiscard]] Result<const Surface*> surface(std::uint32_t stage);
     [[nodiscard]] Result<picture::Texture> texture(std::uint32_t image, std::uint32_t chunks);
 
     const OrderSource& source_;

@@ -32,7 +32,9 @@ const char* kind_name(const codec::ChunkInfo& chunk)
         case proto::ChunkKind::Stitch:
             return "stitch";
         case proto::ChunkKind::Attributes:
-            return chunk.codec == proto::kNormalsCodec ? "normals" : "attributes";
+            return chunk.codec == proto::kNormalsCodec    ? "normals"
+                   : chunk.codec == proto::kLateBitsCodec ? "late bits"
+                                                          : "attributes";
         case proto::ChunkKind::Appearance:
             return "appearance";
         case proto::ChunkKind::Texture:

@@ -237,7 +237,7 @@ TEST(HostileAttributes, AreSkippedWhenTheirCodecIsUnknown)
     StreamParts parts = sample();
     for (ChunkInfo& chunk : parts.info.chunks)
     {
-        chunk.codec = is_attributes(chunk) ? 2 : chunk.codec;
+        chunk.codec = is_attributes(chunk) ? 3 : chunk.codec;
     }
     const Decoded decoded = decode(put_together(parts));
     EXPECT_TRUE(decoded.complete);

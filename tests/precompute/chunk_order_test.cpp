@@ -77,11 +77,11 @@ struct Sample
         source.original = &original;
         source.appearance = &appearance;
         source.original_images = images;
-        source.level_bytes = {300, 500, 1000, 2000, 4000, 8000};
+        source.stage_bytes = {300, 500, 1000, 2000, 4000, 8000};
         source.texture_bytes = {{200, 400, 800, 1600, 3200}};
-        source.level = [this](std::uint32_t level) -> Result<Surface> {
-            ++drawn_levels;
-            return globe(3U << level);
+        source.stage = [this](std::uint32_t stage) -> Result<Surface> {
+            ++drawn_stages;
+            return globe(3U << stage);
         };
         source.image = [this](std::uint32_t, std::uint32_t chunks) -> Result<Raster> {
             return reduced(images[0], 1U << (5 - chunks));
@@ -92,7 +92,7 @@ struct Sample
     std::vector<Raster> images;
     Appearance appearance;
     OrderSource source;
-    int drawn_levels = 0;
+    int drawn_stages = 0;
 };
 
 std::vector<std::uint32_t> indices_of(const ChunkOrder& order, std::int32_t image)
@@ -126,8 +126,8 @@ TEST(ChunkOrder, SendsWhatIsSeenFirst)
     const auto of_plain = ordered(plain.source);
     const auto of_rich = ordered(rich.source);
     ASSERT_TRUE(of_plain && of_rich);
-    EXPECT_GT(of_plain->level_before(0, 4), of_rich->level_before(0, 4));
-    EXPECT_LT(of_rich->level_before(0, 4), 5U);
+    EXPECT_GT(of_plain->stage_before(0, 4), of_rich->stage_before(0, 4));
+    EXPECT_LT(of_rich->stage_before(0, 4), 5U);
 }
 
 TEST(ChunkOrder, LowersTheErrorToThatOfTheLastState)
@@ -172,7 +172,7 @@ TEST(ChunkOrder, KeepsToTheBoundsOfItsOptions)
     const auto order = ordered(sample.source, options);
     ASSERT_TRUE(order);
     EXPECT_EQ(order->steps.size(), 11U);
-    EXPECT_LE(sample.drawn_levels, 6);
+    EXPECT_LE(sample.drawn_stages, 6);
 }
 
 TEST(ChunkOrder, JudgesImagesThatAreNotDrawnByThemselves)
@@ -183,7 +183,7 @@ TEST(ChunkOrder, JudgesImagesThatAreNotDrawnByThemselves)
     const auto order = ordered(sample.source);
     ASSERT_TRUE(order);
     EXPECT_EQ(order->steps.size(), 11U);
-    EXPECT_LT(order->level_before(0, 0), 5U);
+    EXPECT_LT(order->stage_before(0, 0), 5U);
 }
 
 TEST(ChunkOrder, IsTheSameEveryTime)

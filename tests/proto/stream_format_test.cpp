@@ -110,6 +110,7 @@ TEST(StreamFormatDocument, GivesTheConstantsOfTheCode)
         {"kFirstOptionalChunkKind", kFirstOptionalChunkKind},
         {"kValuesCodec", kValuesCodec},
         {"kNormalsCodec", kNormalsCodec},
+        {"kLateBitsCodec", kLateBitsCodec},
         {"kDracoBaseCodec", kDracoBaseCodec},
         {"kSmallBaseCodec", kSmallBaseCodec},
         {"kMaxSmallBaseVertices", kMaxSmallBaseVertices},

@@ -9,8 +9,8 @@ from mesh import next_corner, prev_corner
 from planes import Expected, Plane, add64, dot64, unit_or
 from wedges import Level, WedgeDecoder, WedgeModels, decode_groups
 
-VALUES, NORMALS = 0, 1
-NORMAL, COLOR = 1, 2
+VALUES, NORMALS, LATE_BITS = 0, 1, 2
+TEX_COORD, NORMAL, COLOR = 0, 1, 2
 MAX_GROUPS = 65536
 CONTEXTS = 24
 MOST_TWINS = 64
@@ -41,6 +41,16 @@ def residual_model():
         return bit
 
     return [IntegerModel(make(row)) for row in INITIAL_RESIDUALS]
+
+
+def middle(number, lacks):
+    return number if lacks == 0 else (number >> lacks << lacks) + (1 << (lacks - 1))
+
+
+def refine(streams, number, before, now, name):
+    """A number that lacked `before` bits and now lacks `now`."""
+    more = before - now
+    return middle(((number >> before << more) + streams.raw(more, name)) << now, now)
 
 
 class Order:
@@ -91,7 +101,8 @@ class Order:
 class Values:
     """The values of a level's new wedges."""
 
-    def __init__(self, attributes, level, known, values, models):
+    def __init__(self, attributes, level, known, values, models, lacks):
+        self.lacks = lacks
         self.attributes = attributes
         self.order = Order(level, known)
         self.level = level
@@ -128,13 +139,16 @@ class Values:
         before = None
         for k in range(info.numbers):
             low, high = info.number_range(k)
+            lacks = self.lacks[a]
             if plane.size:
                 expected = plane.expect(self.values[a], k)
             elif twin is not None:
                 expected = Expected(float(self.values[a][twin][k]))
             else:
                 expected = Expected(float((low + high) // 2))
-            likely = clamp(expected.value, float(low), float(high))
+            low, high = low >> lacks, high >> lacks
+            likely = (expected.value - float(middle(0, lacks))) / float(1 << lacks)
+            likely = clamp(likely, float(low), float(high))
             r = math.floor(likely + 0.5)
             rest = likely - r
             sign = 2 if rest < -0.171875 else 0 if rest > 0.171875 else 1
@@ -148,25 +162,27 @@ class Values:
                 raise Refusal("bad-chunk")
             before = float(abs(residual))
             self.sizes[a, w, k] = before
-            numbers.append(number)
+            numbers.append(middle(number << lacks, lacks))
         return tuple(numbers)
 
     def _size(self, a, k, w, plane, expected):
         n = plane.size
+        step = float(1 << self.lacks[a])
         if n == 0:
-            return float(1 << self.attributes[a].bits)
+            return float(1 << self.attributes[a].bits) / step
         total = count = 0.0
         for x in self.order.around(w):
             size = self.sizes.get((a, x, k))
             if size is not None:
                 total, count = total + size, count + 1.0
-        steep = math.sqrt(expected.slope_squared * plane.reach_squared())
+        steep = math.sqrt(expected.slope_squared * plane.reach_squared()) / step
+        error = math.sqrt(expected.error_squared) / step
         size = 0.2 * steep
         if count > 0:
             seen = total / count
-            size = (2.0 * seen + math.sqrt(expected.error_squared)) / 3.0 if n > 3 else seen
+            size = (2.0 * seen + error) / 3.0 if n > 3 else seen
         elif n > 3:
-            size = math.sqrt(expected.error_squared)
+            size = error
         if n < 3:
             size = max(size, 0.1 * steep + 0.5)
         return max(size, 4.0) if n == 1 else size
@@ -285,9 +301,11 @@ class Attributes:
         ]
         self.coding = self.normals = None
         self.next_normals = 0
+        self.lacks = [None] * len(attributes)
+        self.completed = 0
 
     def settled(self):
-        return self.coding is None and self.normals is None
+        return self.coding is None and self.normals is None and self.completed == 0
 
     def decode(self, streams, codec, number, last, mesh, replaced):
         """Decodes a chunk behind level `number`; whether attributes are complete then."""
@@ -296,7 +314,7 @@ class Attributes:
         else:
             if not last or self.coding is not None or self.level_number != number:
                 raise Refusal("bad-chunk")
-            self._normals(streams)
+            self._normals(streams) if codec == NORMALS else self._late_bits(streams)
         streams.finish()
         return self.settled()
 
@@ -332,7 +350,43 @@ class Attributes:
         if self.group_count > 1:
             kept = [] if replaced else self.groups
             self.groups = decode_groups(streams, self.wedge_models, level, kept, self.group_count)
-        self.coding = Values(self.attributes, level, known, self.values, self.models)
+        self._precision(streams)
+        self.coding = Values(self.attributes, level, known, self.values, self.models, self.lacks)
+
+    def _precision(self, streams):
+        for a, info in enumerate(self.attributes):
+            before = self.lacks[a]
+            if info.kind != TEX_COORD:
+                self.lacks[a] = 0
+            elif before is None:
+                self.lacks[a] = streams.raw(4, f"attribute {a} lacks")
+                if self.lacks[a] >= info.bits:
+                    raise Refusal("bad-chunk")
+            elif before > 0:
+                self.lacks[a] = now = streams.raw(4, f"attribute {a} lacks")
+                if now > before:
+                    raise Refusal("bad-chunk")
+                self.values[a] = [
+                    tuple(refine(streams, x, before, now, f"wedge {w} more bits") for x in value)
+                    for w, value in enumerate(self.values[a])
+                ]
+
+    def _late_bits(self, streams):
+        n = self._count(streams, "completed")
+        count = len(self.level.vertices) if any(self.lacks) else 0
+        if n > count - self.completed:
+            raise Refusal("bad-chunk")
+        for w in range(self.completed, self.completed + n):
+            for a, lacks in enumerate(self.lacks):
+                if lacks > 0:
+                    self.values[a][w] = tuple(
+                        refine(streams, x, lacks, 0, f"wedge {w} last bits")
+                        for x in self.values[a][w]
+                    )
+        self.completed += n
+        if self.completed == len(self.level.vertices):
+            self.lacks = [0] * len(self.lacks)
+            self.completed = 0
 
     def _normals(self, streams):
         n = self._count(streams, "normals")

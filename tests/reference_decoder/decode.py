@@ -109,7 +109,7 @@ class Decoder:
             if row.shift or not self._last_level_is_complete():
                 raise Refusal("bad-chunk")
             self.one = stitch(self._streams(contents), self.mesh.positions)
-        elif row.kind == ATTRIBUTES and row.codec <= 1:
+        elif row.kind == ATTRIBUTES and row.codec <= 2:
             self._attributes(row, contents)
         if row.kind < FIRST_OPTIONAL:
             self.within_level = not row.ends_level

@@ -44,7 +44,7 @@ def header_length(data):
         raise Refusal("bad-magic")
     if len(data) < 9:
         raise Refusal("truncated")
-    if data[4] != 4:
+    if data[4] != 5:
         raise Refusal("unsupported-version")
     if all(byte >= 128 for byte in data[5:9]):
         raise Refusal("bad-header")
