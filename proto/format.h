@@ -55,8 +55,8 @@ enum class ChunkKind : std::uint8_t
 inline constexpr std::uint8_t kFirstOptionalChunkKind = 64;
 
 /// Codecs of attributes.
-inline constexpr std::uint8_t kValuesCodec = 0;   ///< Wedges, groups, values of a level.
-inline constexpr std::uint8_t kNormalsCodec = 1;  ///< Normals of the last level.
+inline constexpr std::uint8_t kValuesCodec = 0;    ///< Wedges, groups, values of a level.
+inline constexpr std::uint8_t kNormalsCodec = 1;   ///< Normals of the last level.
 inline constexpr std::uint8_t kLateBitsCodec = 2;  ///< Bits that values of the last level lack.
 
 /// Codecs of the base mesh.

@@ -43,7 +43,8 @@ public:
         BitDecoder bits;
         VSPLIT_TRY(bits.start(bytes));
         VSPLIT_TRY(take_memory([&] {
-            done = codec == proto::kValuesCodec ? decode_values(bits, at) : decode_last(bits, codec, at);
+            done = codec == proto::kValuesCodec ? decode_values(bits, at)
+                                                : decode_last(bits, codec, at);
         }));
         VSPLIT_TRY(done);
         return bits.finish();

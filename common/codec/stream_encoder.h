@@ -87,8 +87,8 @@ struct StreamPlan
     /// Bits of texture coordinates that come behind everything else; those of coarser levels then lack as
     /// many as their positions let nobody see. 0: all of them come at once.
     int late_bits = 0;
-    bool grow_last_level = true;            ///< False: splits to the end.
-    bool cut_levels = true;                 ///< False: one chunk a level, however long.
+    bool grow_last_level = true;  ///< False: splits to the end.
+    bool cut_levels = true;       ///< False: one chunk a level, however long.
 };
 
 /// Codes a plan. `progress`: called with the share done, 0 .. 1.

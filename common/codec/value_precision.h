@@ -73,8 +73,7 @@ template <typename Coder>
         for (std::size_t i = 0; i < numbers; ++i)
         {
             std::int32_t& number = state.shown.values[a][i];
-            number =
-                refine_number(coder, number, before, now, Coder::kEncodes ? wanted[a][i] : 0);
+            number = refine_number(coder, number, before, now, Coder::kEncodes ? wanted[a][i] : 0);
         }
     }
     return {};
@@ -109,9 +108,8 @@ void complete_wedge(
         for (std::size_t i = wedge * numbers; i < (wedge + 1) * numbers; ++i)
         {
             std::int32_t& number = state.shown.values[a][i];
-            number = refine_number(
-                coder, number, state.lacks[a], 0, Coder::kEncodes ? wanted[a][i] : 0
-            );
+            number =
+                refine_number(coder, number, state.lacks[a], 0, Coder::kEncodes ? wanted[a][i] : 0);
         }
     }
 }

@@ -21,12 +21,13 @@ struct TextureOptions
     /// enough stops before.
     double cheap_psnr = 64.0;
     double cheap_bits_per_pixel = 0.8;
-    double small_bits_per_pixel = 1.2;   ///< The same for images below small_bytes.
-    std::uint32_t small_bytes = 48000;   ///< Bytes that no one minds.
-    std::uint64_t cheap_bytes = std::uint64_t{1} << 40U;  ///< And below this many bytes, or small_bytes.
-    std::uint32_t exact_bytes = 24000;  ///< Images that take no more without loss are coded so.
-    bool lossless = false;              ///< Exact (after scaling down); `psnr` does not count then.
-    bool is_normal_map = false;         ///< Channels are directions, not a colour.
+    double small_bits_per_pixel = 1.2;  ///< The same for images below small_bytes.
+    std::uint32_t small_bytes = 48000;  ///< Bytes that no one minds.
+    std::uint64_t cheap_bytes = std::uint64_t{1}
+                                << 40U;  ///< And below this many bytes, or small_bytes.
+    std::uint32_t exact_bytes = 24000;   ///< Images that take no more without loss are coded so.
+    bool lossless = false;       ///< Exact (after scaling down); `psnr` does not count then.
+    bool is_normal_map = false;  ///< Channels are directions, not a colour.
     std::uint32_t preview_bytes = 1400;  ///< About the length of the first chunk.
     double layer_ratio = 1.25;  ///< About how much longer each quality layer makes the prefix.
     /// Measure TextureChunk::squared_error after every chunk, not only after every layer and between

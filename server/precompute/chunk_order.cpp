@@ -124,8 +124,8 @@ private:
     struct Candidate
     {
         std::size_t sequence = 0;
-        double slope = 0.0;           ///< Fall of the error per byte over all of them.
-        std::vector<Measured> runs;   ///< Empty: one run that was not measured.
+        double slope = 0.0;          ///< Fall of the error per byte over all of them.
+        std::vector<Measured> runs;  ///< Empty: one run that was not measured.
     };
 
     Result<std::optional<Candidate>> choose()

@@ -22,7 +22,7 @@ struct PlacementSource
     int bits = 12;                           ///< Position bits.
     int late_bits = 0;                       ///< Bits that only the last level has.
     /// By vertex the number of its component, when levels may lack some; or empty.
-    std::span<const std::uint32_t> components;
+    std::span<const std::uint32_t> components{};
 };
 
 /// Levels of one shift, to be placed together.

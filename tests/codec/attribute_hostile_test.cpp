@@ -88,12 +88,13 @@ Bytes written(const std::function<void(BitEncoder&)>& write)
     return bytes.take();
 }
 
-/// A first chunk: `groups`, no seams, and that many values claimed.
+/// A first chunk: `groups`, no seams, texture coordinates that lack nothing, and that many values claimed.
 Bytes first_chunk(std::uint32_t groups, std::uint32_t values)
 {
     return written([&](BitEncoder& bits) {
         static_cast<void>(codec::code_count(bits, groups - 1));
         bits.raw(0, 1);
+        bits.raw(0, codec::kLackingBits);
         static_cast<void>(codec::code_count(bits, values));
     });
 }

@@ -46,8 +46,13 @@ TEST(Texture, ReachesTheQualityThatWasAskedFor)
     for (std::uint8_t channels = 1; channels <= 4; ++channels)
     {
         const Raster raster = sample_raster(300, 200, channels);
-        const auto texture =
-            encoded(raster, {.psnr = 38.0, .cheap_bits_per_pixel = 0.0, .small_bits_per_pixel = 0.0, .exact_bytes = 0});
+        const auto texture = encoded(
+            raster,
+            {.psnr = 38.0,
+             .cheap_bits_per_pixel = 0.0,
+             .small_bits_per_pixel = 0.0,
+             .exact_bytes = 0}
+        );
         const auto picture = fed(texture).picture(4096);
         ASSERT_TRUE(picture) << picture.error().message;
         EXPECT_EQ(picture->channels, channels);
@@ -73,7 +78,12 @@ TEST(Texture, IsExactWhereThatCostsLittle)
     const Raster raster = sample_raster(64, 48, 3);
     EXPECT_EQ(*fed(encoded(raster)).picture(64), raster);
     EXPECT_NE(
-        *fed(encoded(raster, {.cheap_bits_per_pixel = 0.0, .small_bits_per_pixel = 0.0, .exact_bytes = 100})).picture(64), raster
+        *fed(encoded(
+                 raster,
+                 {.cheap_bits_per_pixel = 0.0, .small_bits_per_pixel = 0.0, .exact_bytes = 100}
+             ))
+             .picture(64),
+        raster
     );
 }
 
@@ -160,7 +170,12 @@ TEST(Texture, MixesNoChannelsOfNormalMaps)
         raster.pixels[i] = 255;
     }
     const auto texture = encoded(
-        raster, {.psnr = 35.0, .cheap_bits_per_pixel = 0.0, .small_bits_per_pixel = 0.0, .exact_bytes = 0, .is_normal_map = true}
+        raster,
+        {.psnr = 35.0,
+         .cheap_bits_per_pixel = 0.0,
+         .small_bits_per_pixel = 0.0,
+         .exact_bytes = 0,
+         .is_normal_map = true}
     );
     const auto decoder = fed(texture);
     EXPECT_FALSE(decoder.header()->color_transform);
