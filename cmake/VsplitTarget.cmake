@@ -1,9 +1,11 @@
 # Compile settings that every vsplit target shares.
 #
-# vsplit_target(NAME) sets warnings, sanitizers and the floating-point contract on a target.
+# vsplit_target(NAME [TEST]) sets warnings, sanitizers and the floating-point contract on a target.
+# TEST: its own sources only try out what they link.
 # -ffp-contract=off is part of the format, not a preference: encoder and decoder must round alike on
 # every processor (proto/STREAM_FORMAT.md, "Arithmetic").
 function(vsplit_target name)
+    cmake_parse_arguments(ARG "TEST" "" "" ${ARGN})
     target_compile_options(
         ${name} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
                         -ffp-contract=off
@@ -22,10 +24,18 @@ function(vsplit_target name)
             target_compile_options(${name} PRIVATE -Wno-maybe-uninitialized -Wno-tsan)
         endif()
         if(VSPLIT_SANITIZE MATCHES "undefined")
-            target_compile_options(${name} PRIVATE -fno-sanitize-recover=undefined)
+            # Reports name lines; more debug information takes a quarter of the compiler's time.
+            target_compile_options(${name} PRIVATE -fno-sanitize-recover=undefined -g1)
+        endif()
+        if(VSPLIT_SANITIZE MATCHES "address|thread")
+            # It takes terabytes of address space; limits on that are for programs without.
+            target_compile_definitions(${name} PRIVATE VSPLIT_SHADOW_MEMORY)
         endif()
     endif()
-    if(VSPLIT_BUILD_FUZZERS)
+    if(VSPLIT_BUILD_FUZZERS AND ARG_TEST)
+        # No fuzz target links them, and compiling them takes longer than running them.
+        target_compile_options(${name} PRIVATE -O0)
+    elseif(VSPLIT_BUILD_FUZZERS)
         # Without it libFuzzer sees no coverage inside the libraries and only guesses.
         target_compile_options(${name} PRIVATE -fsanitize=fuzzer-no-link)
     endif()

@@ -8,10 +8,6 @@
 #include <iostream>
 #include <system_error>
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define VSPLIT_SHADOW_MEMORY 1
-#endif
-
 namespace vsplit::net {
 namespace {
 

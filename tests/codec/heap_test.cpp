@@ -217,7 +217,7 @@ TEST(DecoderHeap, IsNotTakenForAHeaderThatIsRefused)
     }
 }
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // these need terabytes
+#ifndef VSPLIT_SHADOW_MEMORY  // that needs terabytes
 
 /// Decodes with little memory; exits with 0 when that is an error like others.
 [[noreturn]] void decode_in_little_memory(const Bytes& file)

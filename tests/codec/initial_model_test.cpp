@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
+#include <iterator>
 
 namespace vsplit::test {
 namespace {
@@ -13,7 +13,8 @@ using codec::initial_model;
 using codec::LearnedModel;
 using codec::pack_model;
 
-constexpr std::array kTable{
+// Not std::array: clang counts at most 256 arguments to deduce its size from.
+constexpr int kTable[]{
 #include "initial_model.inc"
 };
 
@@ -21,7 +22,7 @@ TEST(InitialModel, PacksIntoTheTableThatItComesFrom)
 {
     const std::vector<LearnedModel> models{initial_model()};
     const auto packed = pack_model(models);
-    ASSERT_EQ(packed.size(), kTable.size());
+    ASSERT_EQ(packed.size(), std::size(kTable));
     for (std::size_t i = 0; i < packed.size(); ++i)
     {
         ASSERT_EQ(packed[i], kTable[i]) << "entry " << i;

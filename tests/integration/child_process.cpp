@@ -79,7 +79,7 @@ ChildProcess::~ChildProcess()
     if (running())
     {
         signal(SIGKILL);
-        static_cast<void>(wait(std::chrono::seconds(10)));
+        static_cast<void>(wait(std::chrono::minutes(1)));
     }
 }
 

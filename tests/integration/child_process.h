@@ -55,7 +55,7 @@ struct Finished
 [[nodiscard]] Finished run(
     const std::vector<std::string>& arguments,
     const std::filesystem::path& logs,
-    std::chrono::milliseconds limit = std::chrono::seconds(25)
+    std::chrono::milliseconds limit = std::chrono::minutes(2)
 );
 
 /// Returns the path of one of vsplit's own programs.

@@ -19,7 +19,7 @@ TEST_F(Daemon, ExitsWithZeroOnSigtermWhenIdle)
 {
     ServerProcess server(root_, logs_);
     server.process().signal(SIGTERM);
-    EXPECT_EQ(server.process().wait(seconds(10)), 0);
+    EXPECT_EQ(server.process().wait(seconds(60)), 0);
 }
 
 TEST_F(Daemon, FinishesRunningTransfersOnSigterm)
@@ -34,7 +34,7 @@ TEST_F(Daemon, FinishesRunningTransfersOnSigterm)
     const auto transfer = client.finish();
     EXPECT_EQ(transfer.done, wire::DoneReason::EndReached);
     EXPECT_EQ(transfer.payload, model.bytes);
-    EXPECT_EQ(server.process().wait(seconds(10)), 0);
+    EXPECT_EQ(server.process().wait(seconds(60)), 0);
     EXPECT_FALSE(Socket::connect(server.port()).open());
 }
 

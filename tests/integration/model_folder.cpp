@@ -3,6 +3,7 @@
 #include "core/file_io.h"
 #include "integration/child_process.h"
 
+#include <chrono>
 #include <fstream>
 #include <random>
 #include <stdexcept>
@@ -78,7 +79,8 @@ EncodedModel ModelFolderTest::encode_file(
     std::vector<std::string> arguments{
         program("vsplit"), "encode", mesh.string(), "-o", model.path.string()};
     arguments.insert(arguments.end(), options.begin(), options.end());
-    const auto encoder = run(arguments, logs_);
+    // Large textures take a while with sanitizers on a machine that has other work.
+    const auto encoder = run(arguments, logs_, std::chrono::minutes(5));
     if (encoder.status != 0)
     {
         throw std::runtime_error("vsplit encode " + mesh.string() + ": " + encoder.errors);

@@ -27,7 +27,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr std::uint32_t kSide = 520;  // Three groups: up to 256, 512 and 1024 pixels.
-constexpr milliseconds kLong{60000};
+constexpr milliseconds kLong{180000};
 
 class Painted : public ModelFolderTest
 {
@@ -251,12 +251,12 @@ TEST_F(Painted, GoesOnInTheMiddleOfATextureWhenTheServerIsKilled)
     std::promise<void> killed;
     const CuttingProxy proxy(port, {longest->offset + longest->bytes / 2}, [&] {
         server->process().signal(SIGKILL);
-        static_cast<void>(server->process().wait(seconds(5)));
+        static_cast<void>(server->process().wait(seconds(60)));
         killed.set_value();
     });
     const fs::path cut = folder_ / "cut";
     ChildProcess pda(command(proxy.port(), "rings", {"--screenshots", cut.string()}), logs_);
-    ASSERT_EQ(killed.get_future().wait_for(seconds(20)), std::future_status::ready);
+    ASSERT_EQ(killed.get_future().wait_for(seconds(120)), std::future_status::ready);
     server.emplace(root_, logs_, std::vector<std::string>{}, port);
     ASSERT_EQ(pda.wait(kLong), 0) << pda.errors();
     const auto totals = json::parse(pda.output()).at("totals");

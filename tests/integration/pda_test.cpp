@@ -178,17 +178,17 @@ TEST_F(Pda, GoesOnWhenTheServerIsKilledAndStartedAgain)
     std::promise<void> killed;
     const CuttingProxy proxy(port, {model.bytes.size() / 2}, [&] {
         server->process().signal(SIGKILL);
-        static_cast<void>(server->process().wait(seconds(5)));
+        static_cast<void>(server->process().wait(seconds(60)));
         killed.set_value();
     });
     const fs::path saved = folder_ / "saved.ply";
     ChildProcess pda(command(proxy.port(), "beast", {"--save", saved.string()}), logs_);
-    ASSERT_EQ(killed.get_future().wait_for(seconds(20)), std::future_status::ready);
+    ASSERT_EQ(killed.get_future().wait_for(seconds(120)), std::future_status::ready);
     // Long enough that an attempt to reconnect finds nobody.
     std::this_thread::sleep_for(std::chrono::milliseconds(400));
     server.emplace(root_, logs_, std::vector<std::string>{}, port);
 
-    ASSERT_EQ(pda.wait(seconds(25)), 0) << pda.errors();
+    ASSERT_EQ(pda.wait(seconds(120)), 0) << pda.errors();
     const auto totals = json::parse(pda.output()).at("totals");
     EXPECT_GE(totals.at("reconnects"), 1);
     EXPECT_EQ(totals.at("complete"), true);

@@ -33,7 +33,7 @@ ServerProcess::ServerProcess(
     : process_(command(root, options, port), logs)
 {
     const std::regex address(R"(127\.0\.0\.1:(\d+)[^\n]*\n)");
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(1);
     while (std::chrono::steady_clock::now() < deadline && process_.running())
     {
         const std::string line = process_.output();
