@@ -79,7 +79,7 @@ std::vector<Extra> read_chunks(ByteReader& reader, std::size_t count)
         }
         const auto bytes = *reader.read_bytes(std::min<std::size_t>(*length, reader.remaining()));
         chunks.push_back(
-            {*after % count, static_cast<std::uint8_t>(*codec % 3), {bytes.begin(), bytes.end()}}
+            {*after % count, static_cast<std::uint8_t>(*codec % 4), {bytes.begin(), bytes.end()}}
         );
     }
     std::ranges::stable_sort(chunks, {}, &Extra::after);
