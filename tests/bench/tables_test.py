@@ -128,16 +128,18 @@ class GoalsTest(unittest.TestCase):
             return {"vsplit": mine, "draco": theirs}
 
         records = [
-            {"name": "a", "added": {"tex_coord": pair(50, 100)}, "all": pair(80, 100)},
+            {"name": "a", "added": {"tex_coord": pair(50, 100)}, "all": pair(80, 100),
+             "beside": pair(90, 100)},
             {"name": "b", "added": {"tex_coord": pair(200, 100), "normal": pair(0, 100)},
-             "all": pair(1, 100)},
+             "all": pair(1, 100), "beside": pair(1, 100)},
         ]
-        coordinates, normals, colors, whole = attributes.goal_rows(records)
+        coordinates, normals, colors, whole, beside = attributes.goal_rows(records)
         self.assertAlmostEqual(coordinates["value"], 1.0)
         self.assertIn("2 of 2", coordinates["measured"])
         self.assertIsNone(normals["value"])
         self.assertIsNone(colors["value"])
         self.assertAlmostEqual(whole["value"], 0.8)
+        self.assertAlmostEqual(beside["value"], 0.9)
         self.assertEqual(list(attributes.goal_rows([])), [])
 
     def test_pictures_are_won_when_at_least_as_good(self):
