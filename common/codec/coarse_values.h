@@ -12,7 +12,7 @@ namespace vsplit::codec {
 inline constexpr std::size_t kFullChunk = 48U * 1024U;
 
 /// Chooses for each level how many low bits its texture coordinates do without: as many as make their steps
-/// about as long on the surface as the cells of its positions.
+/// about as long on the surface as a cell of its positions or two.
 class CoarseValues
 {
 public:
