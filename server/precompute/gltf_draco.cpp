@@ -63,6 +63,24 @@ std::unique_ptr<draco::Mesh> decode(std::span<const std::byte> bytes)
     return mesh.ok() ? std::move(mesh).value() : nullptr;
 }
 
+/// Tells whether an attribute has components of a kind that glTF knows. Draco knows more; its booleans may be
+/// any byte, which no program may read as one.
+bool has_known_components(const draco::PointAttribute& attribute)
+{
+    switch (attribute.data_type())
+    {
+        case draco::DT_INT8:
+        case draco::DT_UINT8:
+        case draco::DT_INT16:
+        case draco::DT_UINT16:
+        case draco::DT_UINT32:
+        case draco::DT_FLOAT32:
+            return attribute.num_components() >= 1 && attribute.num_components() <= 4;
+        default:
+            return false;
+    }
+}
+
 AccessorValues copy_attribute(const draco::Mesh& mesh, const draco::PointAttribute& attribute)
 {
     AccessorValues result;
@@ -157,10 +175,9 @@ Result<GltfPrimitive> decode_draco_primitive(
             id.IsInt() && id.GetNumberAsInt() >= 0
                 ? mesh->GetAttributeByUniqueId(static_cast<std::uint32_t>(id.GetNumberAsInt()))
                 : nullptr;
-        if (attribute == nullptr || attribute->num_components() < 1 ||
-            attribute->num_components() > 4)
+        if (attribute == nullptr || !has_known_components(*attribute))
         {
-            dropped.add("attribute '" + name + "', which Draco does not have");
+            dropped.add("attribute '" + name + "', which Draco does not have as glTF knows it");
             continue;
         }
         const bool unused =
