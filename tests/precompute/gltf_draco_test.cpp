@@ -11,15 +11,20 @@
 namespace vsplit::precompute {
 namespace {
 
+using ::testing::Contains;
+using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
-/// Two triangles with positions, normals and texture coordinates. `speed`: 10 makes it sequential.
-std::string compressed_square(int speed)
+/// Two triangles with positions, normals and texture coordinates. `speed`: 10 makes it sequential; `texture_type`:
+/// of the texture coordinates, numbers or booleans.
+std::string compressed_square(int speed, draco::DataType texture_type = draco::DT_FLOAT32)
 {
     constexpr std::array<std::array<float, 3>, 4> kPoints{
         {{0.0F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F}, {1.0F, 1.0F, 0.0F}, {0.0F, 1.0F, 0.0F}}};
     constexpr std::array<std::array<float, 3>, 4> kNormals{
         {{1.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F}, {0.0F, 0.0F, 1.0F}, {0.0F, 1.0F, 0.0F}}};
+    constexpr std::array<std::array<std::uint8_t, 2>, 4> kBooleans{
+        {{0, 1}, {188, 1}, {2, 255}, {1, 0}}};
     constexpr std::array<std::array<int, 3>, 2> kFaces{{{0, 1, 2}, {0, 2, 3}}};
     draco::TriangleSoupMeshBuilder builder;
     builder.Start(2);
@@ -28,7 +33,7 @@ std::string compressed_square(int speed)
     const int normals =
         builder.AddAttribute(draco::GeometryAttribute::NORMAL, 3, draco::DT_FLOAT32);
     const int texture =
-        builder.AddAttribute(draco::GeometryAttribute::TEX_COORD, 2, draco::DT_FLOAT32);
+        builder.AddAttribute(draco::GeometryAttribute::TEX_COORD, 2, texture_type);
     for (int face = 0; face < 2; ++face)
     {
         const auto& [a, b, c] = kFaces[static_cast<std::size_t>(face)];
@@ -43,7 +48,14 @@ std::string compressed_square(int speed)
         };
         set(points, kPoints);
         set(normals, kNormals);
-        set(texture, kPoints);
+        if (texture_type == draco::DT_BOOL)
+        {
+            set(texture, kBooleans);
+        }
+        else
+        {
+            set(texture, kPoints);
+        }
     }
     const auto mesh = builder.Finalize();
     draco::Encoder encoder;
@@ -93,6 +105,16 @@ TEST_F(GltfDraco, DecodesBothMethods)
             EXPECT_NEAR(tex_coords.values[2 * corners[i] + 1], point[1], 1e-3);
         }
     }
+}
+
+TEST_F(GltfDraco, DropsAttributesOfAKindThatGltfDoesNotKnow)
+{
+    const auto file = draco_file(compressed_square(10, draco::DT_BOOL));
+    const auto read = read_surface(save("model.glb", file));
+    ASSERT_TRUE(read) << describe(read.error());
+    ASSERT_THAT(read->surface.attributes, SizeIs(1));
+    EXPECT_EQ(read->surface.attributes[0].kind, AttributeKind::Normal);
+    EXPECT_THAT(read->dropped, Contains(HasSubstr("TEXCOORD_0")));
 }
 
 TEST_F(GltfDraco, RefusesEveryTruncation)
