@@ -32,8 +32,7 @@ std::string compressed_square(int speed, draco::DataType texture_type = draco::D
         builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
     const int normals =
         builder.AddAttribute(draco::GeometryAttribute::NORMAL, 3, draco::DT_FLOAT32);
-    const int texture =
-        builder.AddAttribute(draco::GeometryAttribute::TEX_COORD, 2, texture_type);
+    const int texture = builder.AddAttribute(draco::GeometryAttribute::TEX_COORD, 2, texture_type);
     for (int face = 0; face < 2; ++face)
     {
         const auto& [a, b, c] = kFaces[static_cast<std::size_t>(face)];
