@@ -56,7 +56,11 @@ CoarseValues::CoarseValues(const StreamPlan& plan) : plan_(plan), stretch_(plan.
 std::vector<std::uint8_t> CoarseValues::lacking(int shift, std::size_t known)
 {
     std::vector<std::uint8_t> lacks(stretch_.size());
-    for (std::size_t a = 0; a < lacks.size() && plan_.late_bits > 0; ++a)
+    if (plan_.late_bits == 0)
+    {
+        return lacks;
+    }
+    for (std::size_t a = 0; a < lacks.size(); ++a)
     {
         if (!may_lack_bits(plan_.attributes[a]))
         {

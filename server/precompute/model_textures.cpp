@@ -50,6 +50,24 @@ struct Stage
     std::uint64_t bytes = 0;  ///< Of the prefix.
 };
 
+/// Decodes a prefix of a stream and calls `follow(step)` after every step.
+template <typename Follow>
+Result<void> decode_prefix(
+    codec::StreamDecoder& decoder, std::span<const std::byte> prefix, const Follow& follow
+)
+{
+    while (!prefix.empty())
+    {
+        const auto taken = decoder.feed(prefix);
+        VSPLIT_TRY(taken);
+        prefix = prefix.subspan(*taken);
+        const auto step = decoder.step();
+        VSPLIT_TRY(step);
+        follow(*step);
+    }
+    return {};
+}
+
 /// Finds the stages of a stream: one a level, then one for all normals of an attribute and what else makes the
 /// last level better without being a level. The last stage is the whole file.
 Result<std::vector<Stage>> find_stages(std::span<const std::byte> file)
@@ -57,35 +75,24 @@ Result<std::vector<Stage>> find_stages(std::span<const std::byte> file)
     std::vector<Stage> stages;
     codec::StreamDecoder decoder;
     std::size_t chunk = 0;
-    for (auto rest = file; !decoder.complete();)
-    {
-        const auto taken = decoder.feed(rest);
-        VSPLIT_TRY(taken);
-        rest = rest.subspan(*taken);
-        const auto step = decoder.step();
-        VSPLIT_TRY(step);
-        const bool plain = step->level_complete && decoder.info()->attributes.empty();
-        if (plain || step->attributes_complete)
+    const auto follow = [&](const codec::Step& step) {
+        const bool plain = step.level_complete && decoder.info()->attributes.empty();
+        if (plain || step.attributes_complete)
         {
             stages.push_back({chunk, decoder.decoded_bytes()});
         }
-        chunk += step->chunk != nullptr ? 1 : 0;
-    }
+        chunk += step.chunk != nullptr ? 1 : 0;
+    };
+    VSPLIT_TRY(decode_prefix(decoder, file, follow));
     stages.back() = {chunk - 1, decoder.decoded_bytes()};
     return stages;
 }
 
-/// Decodes a prefix of a stream.
+/// What a client shows after a prefix of a stream.
 Result<Surface> surface_after(std::span<const std::byte> prefix)
 {
     codec::StreamDecoder decoder;
-    while (!prefix.empty())
-    {
-        const auto taken = decoder.feed(prefix);
-        VSPLIT_TRY(taken);
-        prefix = prefix.subspan(*taken);
-        VSPLIT_TRY(decoder.step());
-    }
+    VSPLIT_TRY(decode_prefix(decoder, prefix, [](const codec::Step&) {}));
     return picture::decoded_surface(decoder);
 }
 
